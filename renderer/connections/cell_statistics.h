@@ -10,16 +10,17 @@
 
 namespace lacuna {
 
-/// The second moment of the contributions of connections in the iterations so far, by the cell of
+/// The second moment of the contributions of connections in all iterations so far, by the cell of
 /// the eye vertex and the length of the light path; and the mean contribution of all connections of
-/// a path, by tile. Learned state: the same for any number of threads.
+/// a path, by tile. Learned state, independent of the number of threads.
 class CellStatistics {
  public:
-  /// Lengths of light paths, in vertices, that are counted separately; longer ones count as this.
+  /// Number of light path lengths, in vertices, with separate statistics; longer paths share the
+  /// last.
   static constexpr int lengths = 8;
 
   struct Cell {
-    std::uint64_t visits = 0;  ///< eye vertices
+    std::uint64_t visits = 0;  ///< number of eye vertices
     std::array<std::uint64_t, lengths>
         attempts{};                         ///< eye vertices with light paths of this length
     std::array<double, lengths> squares{};  ///< sum over `attempts` of the squared contributions
@@ -33,15 +34,15 @@ class CellStatistics {
 
     void visit(std::uint32_t cell) { ++at(cell).visits; }
     void attempt(std::uint32_t cell, int s) { ++at(cell).attempts[index(s)]; }
-    /// Adds the contribution of one connection. `value` is per unit of the eye vertex' throughput
-    /// and not divided by `survival`, the probability with which the connection was made.
+    /// Adds the contribution of a connection. `value` is per unit of the eye vertex' throughput,
+    /// and not divided by `survival`, the probability of making the connection.
     void add_contribution(std::uint32_t cell, int s, double value, double survival) {
       at(cell).squares[index(s)] += value * value / survival;
     }
-    /// Adds the contributions of a path's connections to its pixel.
+    /// Adds the sum of the contributions of a path's connections to its pixel.
     void add_path_sum(double value) { gathered_ += value; }
     void add_paths(std::uint64_t n) { paths_ += n; }
-    /// Call when the tile is done: frees what add() does not read.
+    /// Call at the end of the tile: frees memory that CellStatistics::add() does not read.
     void close() { slot_ = {}; }
 
    private:
@@ -61,7 +62,7 @@ class CellStatistics {
       std::uint32_t cell;
       Cell sums;
     };
-    std::vector<std::uint32_t> slot_;  // of each cell, its index in visited_
+    std::vector<std::uint32_t> slot_;  // of each cell: index in visited_
     std::vector<Visited> visited_;
     double gathered_ = 0;
     std::uint64_t paths_ = 0;
@@ -87,7 +88,7 @@ class CellStatistics {
                : 0;
   }
 
-  /// One iteration's accumulators, one for each tile, in the tiles' order.
+  /// Adds one iteration's accumulators, one per tile, in the tiles' order.
   void add(std::span<const Accumulator> accumulators);
 
   void save(ByteWriter& out) const;
@@ -95,11 +96,11 @@ class CellStatistics {
   void load(ByteReader& in);
 
  private:
-  /// A connection that roulette keeps is weighted by 20 at most, however wrong the expectation of
-  /// its cell is.
+  /// Limits the weight of a connection kept by roulette to 20, however wrong the expectation of its
+  /// cell.
   static constexpr double min_survival = 0.05;
-  /// Attempts after which a mean square is trusted: it is then known to 1 / sqrt(32), a sixth, of
-  /// the spread of one. Before, all connections are made.
+  /// Attempts from which a mean square is used: its standard error is then 1 / sqrt(32), about a
+  /// sixth, of the standard deviation. Before, all connections are made.
   static constexpr std::uint64_t min_attempts = 32;
 
   static std::size_t index(int s) { return static_cast<std::size_t>(std::min(s, lengths) - 1); }
@@ -111,7 +112,7 @@ class CellStatistics {
   };
   std::vector<Cell> cells_;
   std::vector<TileSums> tiles_;
-  std::vector<double> expected_;  // sqrt(mean square) of each cell and length; infinite: unknown
+  std::vector<double> expected_;  // sqrt(mean square) by cell and length; infinite: unknown
 };
 
 }  // namespace lacuna

@@ -10,29 +10,29 @@
 
 namespace lacuna {
 
-/// connections: paired. Each eye path is joined to a light path of its own (integrators/bdpt.cpp):
-/// the one choice without resampling.
+/// connections: paired. Each eye path is connected to its own light path (integrators/bdpt.cpp):
+/// the only strategy without resampling.
 struct PairedConnections : StrategyBase {
   explicit PairedConnections(const PairedSettings&) {}
 };
 
 /// Samples light vertices, shared by all pixels, for an eye vertex.
 ///
-/// - resampling(): the settings that all such strategies have in common.
+/// - resampling(): the settings common to all such strategies.
 /// - distributions: the names of the distributions, for the layers `distributions.NAME`.
-/// - cells(): number of cells that CellStatistics distinguishes; known after prepare().
+/// - cells(): number of cells of CellStatistics; valid after prepare().
 /// - begin(): called when the light vertices of an iteration are complete. Only begin() may change
 ///   the distributions of the iteration.
 /// - find(): looks up the distributions for an eye vertex, `depth` edges from the eye: a struct
 ///   with a member `cell` < cells().
-/// - sample(): samples light vertices of the LightRange, one of each s that has any or some of all
-///   lengths, each with probability `survival(s)`, and calls `use(s, drawn)`.
-///   VertexSample::probability is the exact number of times, > 0, that this vertex is expected to
-///   be sampled, `survival(s)` apart; otherwise the method is biased. It is above 0 for every
+/// - sample(): samples light vertices of the LightRange, either one of each existing length s or
+///   some of all lengths, each with probability `survival(s)`, and calls `use(s, drawn)`.
+///   VertexSample::probability is the exact expected number of samples of this vertex, without the
+///   factor `survival(s)`, > 0; otherwise the method is biased. It must be positive for every
 ///   vertex that can contribute.
 ///
-/// find() and sample() are const and are called by many threads; they use the given generator only,
-/// so that the bits do not depend on the threads.
+/// find() and sample() are const and are called by many threads; they use only the given generator,
+/// so the result is bit-identical for any number of threads.
 template <class C>
 concept SharedConnections = Strategy<C> &&
     requires(C c, const C& k, const IterationContext& context, Counters& counters,

@@ -48,7 +48,7 @@ RecordContributions contributions_to(const EyeRecords::Record& record,
                                      const IterationContext& context, const LightVertices& lights,
                                      int s, const WantedContributions& wanted) {
   const Guide guide;
-  Vertex unit = record.vertex;  // what light gives to the record, whatever it gives to a pixel
+  Vertex unit = record.vertex;  // contributions to the record, independent of its pixel
   unit.throughput = Rgb(1, 1, 1);
   const SurfaceEndpoint eye{unit, record.depth, Transport::radiance, guide};
   const auto finite = [](double w) { return std::isfinite(w) ? w : 0.0; };

@@ -12,8 +12,8 @@
 
 namespace lacuna {
 
-/// Vertices of a few eye paths, traced anew in each iteration, at which distributions over light
-/// vertices are stored (Georgiev et al. 2012, "Importance Caching for Complex Illumination").
+/// Vertices of a few eye paths, traced in each iteration, that store distributions over light
+/// vertices (Georgiev et al. 2012, "Importance Caching for Complex Illumination").
 class EyeRecords {
  public:
   struct Record {
@@ -28,14 +28,16 @@ class EyeRecords {
   std::size_t size() const { return records_.size(); }
   const Record& operator[](std::size_t i) const { return records_[i]; }
 
-  /// The records that an eye vertex is connected by.
+  /// The records used by an eye vertex.
   struct Near {
     static constexpr std::size_t most = 64;
-    std::uint32_t cell = 0;  ///< of CellStatistics: records are new in each iteration
+    std::uint32_t cell =
+        0;  ///< of CellStatistics: a single one, as records change in each iteration
     std::size_t n = 0;
-    std::array<std::uint32_t, most> near{};  ///< the nearest n records
+    std::array<std::uint32_t, most> near{};  ///< indices of the n nearest records
   };
-  /// The nearest `neighbours` records, or as many as there are. Requires neighbours <= Near::most.
+  /// The nearest `neighbours` records, or all if there are fewer. Requires neighbours <=
+  /// Near::most.
   Near nearest(const Vertex& v, int neighbours) const {
     Near found;
     const auto wanted = std::span(found.near).first(static_cast<std::size_t>(neighbours));
@@ -48,21 +50,21 @@ class EyeRecords {
   RecordTree tree_;
 };
 
-/// Throws MemoryLimitError, in the name of the connections `who`, if there is no memory for
-/// `bytes_each` for each record and light vertex.
+/// Throws MemoryLimitError if there is no memory for `bytes_each` per pair of record and light
+/// vertex. `who`: the name of the connection strategy, for the message.
 void require_distributions(std::string_view who, std::size_t records, std::size_t bytes_each,
                            const LightVertices& lights);
 
-/// What the light vertices of one length give to a record per unit of its throughput, as luminance;
-/// 0 where that is not finite.
+/// The contributions of all light vertices of one length to a record of unit throughput, as
+/// luminance; 0 if not finite.
 struct RecordContributions {
   std::vector<double> full;        ///< with visibility
-  std::vector<double> unshadowed;  ///< without
+  std::vector<double> unshadowed;  ///< without visibility
   std::vector<double> bounded;     ///< also without the record's BSDF and the distance
-  std::uint64_t rays = 0;          ///< that were traced
+  std::uint64_t rays = 0;          ///< traced
 };
 
-/// The contributions that are wanted; those of the others are 0.
+/// The contributions to compute; the others are 0.
 struct WantedContributions {
   bool full = true;
   bool unshadowed = false;

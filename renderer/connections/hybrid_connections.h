@@ -8,7 +8,7 @@
 namespace lacuna {
 
 /// connections: hybrid. Importance caching at the first vertices of an eye path, where records are
-/// near; the skeleton at later vertices (Noel 2015, 11.6).
+/// close; the skeleton at later vertices (Noel 2015, 11.6).
 class HybridConnections : public StrategyBase {
  public:
   explicit HybridConnections(const HybridSettings& settings)
@@ -31,7 +31,7 @@ class HybridConnections : public StrategyBase {
     skeleton_.begin(context, lights, statistics, counters);
   }
 
-  /// The distributions that an eye vertex is connected by.
+  /// The distributions used by an eye vertex.
   struct CellLookup {
     std::uint32_t cell = 0;  ///< of CellStatistics
     bool cached = false;

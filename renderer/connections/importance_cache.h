@@ -10,9 +10,9 @@
 
 namespace lacuna {
 
-/// connections: importance_cache. Light vertices are resampled by distributions at records. Records
-/// are the vertices of a few eye paths, traced anew in each iteration (Georgiev et al. 2012,
-/// "Importance Caching for Complex Illumination"; on bidirectional path tracing: Noel 2015, 11.5).
+/// connections: importance_cache. Light vertices are resampled by distributions at records, the
+/// vertices of a few eye paths traced in each iteration (Georgiev et al. 2012, "Importance Caching
+/// for Complex Illumination"; with bidirectional path tracing: Noel 2015, 11.5).
 class ImportanceCacheConnections : public StrategyBase {
  public:
   /// Records are placed up to `record_depth` edges from the eye.
@@ -24,14 +24,14 @@ class ImportanceCacheConnections : public StrategyBase {
   static constexpr std::array<std::string_view, 4> distributions{"full", "unshadowed", "bounded",
                                                                  "uniform"};
 
-  static std::size_t cells() { return 1; }  // records are new in each iteration
+  static std::size_t cells() { return 1; }  // records change in each iteration
   /// Traces the records and builds their distributions. Throws MemoryLimitError if there is no
   /// memory for them.
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
              Counters& counters);
 
   struct CellLookup : EyeRecords::Near {
-    const ResamplingCell* drawn = nullptr;  ///< of one of them, chosen at random
+    const ResamplingCell* drawn = nullptr;  ///< of one of the nearest records, selected at random
   };
   CellLookup find(const Vertex& v, int /*depth*/, Rng& rng) const {
     CellLookup lookup{records_.nearest(v, settings_.neighbours)};
@@ -41,8 +41,8 @@ class ImportanceCacheConnections : public StrategyBase {
     return lookup;
   }
 
-  /// SharedConnections::sample(). One of the n nearest records, chosen uniformly, samples all light
-  /// vertices; the probability of a vertex is the mean of its probabilities at the n records.
+  /// SharedConnections::sample(). One of the n nearest records, selected uniformly, samples all
+  /// light vertices; the probability of a vertex is the mean of its probabilities at the n records.
   template <class Survival, class Use>
   void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
               Use&& use) const {
@@ -69,7 +69,7 @@ class ImportanceCacheConnections : public StrategyBase {
   }
 
  private:
-  static constexpr std::uint8_t uniform = 3;  // in `distributions`
+  static constexpr std::uint8_t uniform = 3;  // index in `distributions`
 
   std::uint64_t build(const EyeRecords::Record& record, ResamplingCell& cell,
                       const IterationContext& context, const LightVertices& lights) const;

@@ -7,10 +7,10 @@ namespace lacuna {
 
 namespace {
 
-/// Of so many decisions by maps one is checked by a ray: too few for the time to matter.
+/// One in this number of map results is verified by a ray: too few to affect the time.
 constexpr std::size_t check_every = 64;
-/// The decision is that of the nearest texels, bilinearly: the maps of many lights' visibility blur
-/// shadows' edges, which a probability need not.
+/// Bilinear comparison of the nearest texels. A wider filter, as for the visibility of many lights,
+/// would blur shadow edges, which a probability does not need.
 constexpr int filter_of_decisions = 1;
 
 }  // namespace

@@ -10,21 +10,20 @@
 namespace lacuna {
 
 /// V between the nodes of the filtered skeleton and light vertices (Noel 2015, eq. 188): by shadow
-/// rays, or by the nodes' cube maps of depth, which take the same time however many triangles there
-/// are (11.6). A few decisions by maps are checked by rays; what the checks find changes nothing
-/// but the report.
+/// rays, or by the nodes' cube maps of depth, whose time does not depend on the number of triangles
+/// (11.6). A few results of maps are verified by rays, for the report only.
 class NodeVisibility {
  public:
-  /// `nodes`: those of filtered_nodes(), which must outlive it. Throws what filtered_node_maps()
-  /// does.
+  /// `nodes`: filtered_nodes(), which must outlive this. Throws the exceptions of
+  /// filtered_node_maps().
   void prepare(const PrepareContext& context, std::span<const V3f> nodes,
                const SkeletonConnectionsSettings& settings);
 
-  /// What its answers have taken.
+  /// The number of tests.
   struct Tests {
     std::uint64_t rays = 0;
-    std::uint64_t checked = 0;  ///< decisions by maps that a ray was traced for, too
-    std::uint64_t wrong = 0;    ///< of these, where the map says the other
+    std::uint64_t checked = 0;  ///< results of maps that were verified by a ray
+    std::uint64_t wrong = 0;    ///< of these, results that the ray contradicts
 
     Tests& operator+=(const Tests& o) {
       rays += o.rays, checked += o.checked, wrong += o.wrong;
@@ -36,7 +35,7 @@ class NodeVisibility {
   std::vector<double> between(const IterationContext& context, std::size_t node,
                               const LightVertices& lights, int s, Tests& tests) const;
 
-  /// There are maps.
+  /// Whether maps are used.
   bool by_maps() const { return maps_ != nullptr; }
 
  private:
@@ -47,7 +46,7 @@ class NodeVisibility {
   std::shared_ptr<const NodeMaps> maps_;
 };
 
-/// V by a node's cube map of all vertices LightVertices::at(s, .).
+/// V of all vertices LightVertices::at(s, .), by a node's cube map.
 std::vector<double> seen_from(const LightVertices& lights, int s, const NodeView& view);
 
 }  // namespace lacuna

@@ -7,8 +7,8 @@ namespace lacuna {
 
 /// w_n(y) of Noel 2015, eq. 187, for all vertices LightVertices::at(s, .): the luminance of the
 /// light path's throughput over max(distance to `x`, `least_distance`)^2, in scene units;
-/// `least_distance` > 0. Infinite emitters: the luminance alone. 0 where `sides` is facing and the
-/// vertex scatters nothing to the side that `x` is on.
+/// `least_distance` > 0. For infinite emitters only the luminance. 0 if `sides` is facing and the
+/// vertex does not scatter to the side of `x`.
 std::vector<double> node_weights(const LightVertices& lights, int s, const V3f& x,
                                  double least_distance, LightSides sides);
 

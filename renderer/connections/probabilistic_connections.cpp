@@ -6,7 +6,8 @@ namespace lacuna {
 
 namespace {
 
-/// Uniform in [0, 1), in steps of 2^-53: sums over very different weights need them.
+/// Uniform in [0, 1), a multiple of 2^-53, the resolution needed for sums of very different
+/// weights.
 double fine_number(Rng& rng) {
   const std::uint64_t high = rng.next_u32();
   return static_cast<double>(((high << 32) | rng.next_u32()) >> 11) * 0x1p-53;
@@ -24,7 +25,7 @@ JointDistribution::Draw JointDistribution::sample(int longest, Rng& rng) const {
   const auto first = cumulative_.begin() + 1;
   const auto last = first + longest;
   auto found = std::upper_bound(first, last, at);
-  // Only rounding reaches `last`: the longest that weighs anything.
+  // Only rounding leads to `last`: then take the longest length of positive weight.
   if (found == last) found = std::lower_bound(first, last, total(longest));
   const int s = static_cast<int>(found - cumulative_.begin());
   return {s, tables_[place(s) - 1].sample(rng)};
@@ -80,7 +81,7 @@ JointDistribution::Draw ProbabilisticConnections::draw(const CellLookup& lookup,
 VertexSample ProbabilisticConnections::probability(const CellLookup& lookup, int longest,
                                                    const JointDistribution::Draw& d) const {
   const double same = 1 / static_cast<double>(vertices_up_to(longest));
-  double by_records = 0;  // mean over the records, of which blind ones draw uniformly
+  double by_records = 0;  // mean over the records; records of weight 0 sample uniformly
   double uniform = lookup.n == 0 ? 1 : double(static_cast<float>(settings_.uniform));
   const double each = lookup.n == 0 ? 0 : (1 - uniform) / static_cast<double>(lookup.n);
   for (std::size_t k = 0; k < lookup.n; ++k) {

@@ -12,8 +12,8 @@
 
 namespace lacuna {
 
-/// A distribution over the light vertices of all lengths, in proportion to what they give to one
-/// record: a length, then a vertex of that length.
+/// A distribution over the light vertices of all lengths, in proportion to their contributions to
+/// one record: a length, then a vertex of that length.
 class JointDistribution {
  public:
   void clear() {
@@ -28,11 +28,11 @@ class JointDistribution {
     int s;
     std::uint32_t index;
   };
-  /// Nothing of up to `longest` vertices gives anything.
+  /// Whether all vertices with s <= longest have weight 0.
   bool empty(int longest) const { return !(total(longest) > 0); }
-  /// Samples a vertex of those with s <= longest, which must not be empty.
+  /// Samples a vertex with s <= longest. Requires !empty(longest).
   Draw sample(int longest, Rng& rng) const;
-  /// Probability that sample() returns `d`; 0 if empty().
+  /// Probability that sample() returns `d`; 0 if empty(longest).
   double pmf(int longest, const Draw& d) const {
     if (empty(longest) || tables_[place(d.s) - 1].empty()) return 0;
     return (total(d.s) - total(d.s - 1)) / total(longest) *
@@ -41,21 +41,21 @@ class JointDistribution {
 
  private:
   static std::size_t place(int s) { return static_cast<std::size_t>(s); }
-  /// Weight of the vertices of up to `s` from the light.
+  /// Total weight of the vertices up to length `s`.
   double total(int s) const { return cumulative_[place(s)]; }
 
-  std::vector<AliasTable> tables_;          // of s = 1, 2, ...
-  std::vector<double> cumulative_ = {0.0};  // of s = 0, 1, ...
+  std::vector<AliasTable> tables_;          // for s = 1, 2, ...
+  std::vector<double> cumulative_ = {0.0};  // for s = 0, 1, ...
 };
 
-/// connections: probabilistic. An eye vertex draws light vertices from all of the shared paths and
-/// of all lengths at once, by what they give to a record nearby, MIS weight included (Popov,
-/// Ramamoorthi, Durand and Drettakis 2015). A share of the draws is uniform, so that none that a
-/// record does not see is left out.
+/// connections: probabilistic. For an eye vertex, samples light vertices from all shared paths and
+/// lengths at once, by their contributions to a nearby record, including MIS weights (Popov,
+/// Ramamoorthi, Durand and Drettakis 2015). A fraction of the samples is uniform, so vertices
+/// occluded from a record keep a positive probability.
 ///
-/// The paper's text was not at hand: this follows its abstract, Noel 2015 (4.3.4 and 11.6), and for
-/// the count of correlated samples Grittmann et al. 2021, who take the paper's bound of the
-/// variance to be the count of one sample.
+/// The paper's text was not available: this follows its abstract and Noel 2015 (4.3.4 and 11.6),
+/// and, for the count of correlated samples, Grittmann et al. 2021, who identify the paper's bound
+/// of the variance with the count of one sample.
 class ProbabilisticConnections : public StrategyBase {
  public:
   explicit ProbabilisticConnections(const ProbabilisticConnectionsSettings& settings)
@@ -64,7 +64,7 @@ class ProbabilisticConnections : public StrategyBase {
   const ResamplingSettings& resampling() const { return settings_; }
   static constexpr std::array<std::string_view, 2> distributions{"records", "uniform"};
 
-  static std::size_t cells() { return 1; }  // records are new in each iteration
+  static std::size_t cells() { return 1; }  // records change in each iteration
   /// Traces the records and builds their distributions. Throws MemoryLimitError if there is no
   /// memory for them.
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
@@ -101,7 +101,7 @@ class ProbabilisticConnections : public StrategyBase {
                       const IterationContext& context, const LightVertices& lights) const;
   JointDistribution::Draw draw(const CellLookup& lookup, int longest, Rng& rng) const;
   JointDistribution::Draw uniform_draw(int longest, Rng& rng) const;
-  /// `d` with its probability in one draw.
+  /// `d` with its probability in one sample.
   VertexSample probability(const CellLookup& lookup, int longest,
                            const JointDistribution::Draw& d) const;
   std::size_t vertices_up_to(int s) const { return counts_[static_cast<std::size_t>(s)]; }
@@ -109,7 +109,7 @@ class ProbabilisticConnections : public StrategyBase {
   ProbabilisticConnectionsSettings settings_;
   EyeRecords records_;
   std::vector<JointDistribution> joint_of_records_;
-  std::vector<std::size_t> counts_ = {0};  // of light vertices with up to s = 0, 1, ... from it
+  std::vector<std::size_t> counts_ = {0};  // light vertices of length up to s = 0, 1, ...
 };
 
 }  // namespace lacuna

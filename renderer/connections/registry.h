@@ -7,7 +7,8 @@
 
 namespace lacuna {
 
-/// All connection strategies. A new one is a row here and an alternative of ConnectionsSettings.
+/// All connection strategies. A new strategy is a row here and an alternative of
+/// ConnectionsSettings.
 using ConnectionsRegistry =
     Registry<Entry<PairedSettings, PairedConnections>, Entry<UniformSettings, UniformConnections>,
              Entry<SkeletonConnectionsSettings, SkeletonConnections>,

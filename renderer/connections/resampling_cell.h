@@ -10,9 +10,9 @@ namespace lacuna {
 /// A light vertex sampled for an eye vertex.
 struct VertexSample {
   std::uint32_t index = 0;        ///< LightVertices::at(s, index)
-  float probability = 0;          ///< the expected number of samples of this one, > 0
-  std::uint8_t distribution = 0;  ///< which of a site's distributions it belongs to
-  float survival = 1;             ///< probability of making it, > 0
+  float probability = 0;          ///< expected number of samples of this vertex, > 0
+  std::uint8_t distribution = 0;  ///< index among the distributions of a node or record
+  float survival = 1;             ///< probability of making the connection, > 0
 };
 
 /// The distributions over light vertices at one node or record, one for each length of light paths.
@@ -37,9 +37,9 @@ struct LightRange {
   int longest;
 };
 
-/// Samples a light vertex for each s of the range that has vertices, with probability
-/// `survival(s)`, and calls `use(s, drawn)`. Sampling is split into `choose(s)` and
-/// `resolve(s, chosen)`: each step prefetches what the next one reads.
+/// For each s of the range that has vertices, samples a light vertex with probability `survival(s)`
+/// and calls `use(s, drawn)`. Sampling is split into `choose(s)` and `resolve(s, chosen)`: each
+/// step prefetches the data of the next.
 template <class Survival, class Choose, class Resolve, class Use>
 void sample_connections(const LightRange& range, Survival&& survival, Choose&& choose,
                         Resolve&& resolve, Use&& use) {
@@ -67,7 +67,7 @@ void sample_connections(const LightRange& range, Survival&& survival, Choose&& c
   }
 }
 
-/// sample_connections() with equal probabilities for all vertices.
+/// sample_connections() with equal probabilities of all vertices.
 template <class Survival, class Use>
 void sample_uniformly(const LightRange& range, Rng& rng, std::uint8_t distribution,
                       Survival&& survival, Use&& use) {

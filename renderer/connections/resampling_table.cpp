@@ -15,7 +15,7 @@ double sum(std::span<const double> values) {
 ResamplingTable::ResamplingTable(std::span<const std::span<const double>> weights,
                                  Combination combination) {
   const std::size_t n = weights.front().size();
-  std::vector<double> scale;  // of each distribution: 1 over its sum, 0 if it has none
+  std::vector<double> scale;  // 1 over the sum of each distribution, 0 if that is 0
   std::size_t in_use = 0;
   for (const auto& w : weights) {
     const double all = sum(w);
@@ -25,7 +25,7 @@ ResamplingTable::ResamplingTable(std::span<const std::span<const double>> weight
   if (in_use == 0) return;
 
   distributions_.resize(n);
-  std::vector<double> kept(weights.size(), 0.0);  // what the max heuristic leaves of each
+  std::vector<double> kept(weights.size(), 0.0);  // what remains of each after the max heuristic
   std::vector<double> combined(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     double most = 0;

@@ -15,8 +15,8 @@ void SkeletonConnections::prepare(const PrepareContext& context) {
 }
 
 bool SkeletonConnections::accepted(std::uint64_t mapped, std::uint64_t sum) const {
-  // Noel 2015, 11.4: left out are nodes "mapping to fewer eye vertices than the mean". Its formula
-  // has <=, by which the only node of a small room would be left out, too.
+  // Noel 2015, 11.4, excludes nodes "mapping to fewer eye vertices than the mean". Its formula has
+  // <=, which would also exclude the only node of a small room.
   const double mean = double(sum) / double(positions_.size());
   return mapped > 0 && double(mapped) >= settings_.acceptance * mean;
 }

@@ -12,8 +12,8 @@
 namespace lacuna {
 
 /// connections: skeleton. Light vertices are resampled by distributions at the nodes of the
-/// filtered skeleton. A node sees much of what the eye vertices around it see (Noel
-/// 2015, 11.2-11.4).
+/// filtered skeleton: a node sees much of what the eye vertices around it see (Noel 2015,
+/// 11.2-11.4).
 class SkeletonConnections : public StrategyBase {
  public:
   explicit SkeletonConnections(const SkeletonConnectionsSettings& settings) : settings_(settings) {}
@@ -24,14 +24,14 @@ class SkeletonConnections : public StrategyBase {
   static constexpr bool needs_space() { return true; }
 
   void prepare(const PrepareContext& context);
-  /// One cell for each node, and one for eye vertices that belong to no node.
+  /// One cell per node, and one for eye vertices without a node.
   std::size_t cells() const { return positions_.size() + 1; }
-  /// Builds the distributions of the nodes to which enough eye vertices of earlier iterations
-  /// belonged; in the first iteration, of no node.
+  /// Builds the distributions of nodes with enough eye vertices in earlier iterations; none in the
+  /// first iteration.
   void begin(const IterationContext& context, const LightVertices& lights,
              const CellStatistics& statistics, Counters& counters);
 
-  /// The node that an eye vertex is connected by.
+  /// The node used by an eye vertex.
   struct CellLookup {
     std::uint32_t cell = 0;                         ///< of CellStatistics
     const ResamplingCell* distributions = nullptr;  // null: sample uniformly
@@ -63,7 +63,8 @@ class SkeletonConnections : public StrategyBase {
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
-  // In `distributions`: of eye vertices whose node has none of its own (Noel 2015, Fig. 106).
+  // Index in `distributions` for eye vertices whose node has no distributions (Noel 2015, Fig.
+  // 106).
   static constexpr std::uint8_t fallback = 3;
 
   bool accepted(std::uint64_t mapped, std::uint64_t sum) const;
@@ -75,7 +76,7 @@ class SkeletonConnections : public StrategyBase {
   double least_distance_ = 0;
   std::optional<SurfaceLookup> lookup_;
   NodeVisibility visibility_;
-  NodeVisibility::Tests tests_;  // of all iterations of this process
+  NodeVisibility::Tests tests_;  // over all iterations of this process
   std::vector<ResamplingCell> cells_of_nodes_;
   std::size_t used_ = 0;
 };

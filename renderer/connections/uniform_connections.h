@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// connections: uniform. Samples all light vertices with equal probability: the baseline that the
-/// other resampling strategies are compared with.
+/// connections: uniform. Samples all light vertices with equal probability: the baseline for the
+/// other resampling strategies.
 class UniformConnections : public StrategyBase {
  public:
   explicit UniformConnections(const UniformSettings& settings) : settings_(settings) {}

@@ -9,7 +9,8 @@ namespace lacuna {
 
 namespace {
 
-/// What a bin keeps of 2^32 for an index of that weight, whose share of a bin is `scaled` < 1.
+/// The threshold, of 2^32, below which a bin returns its own index: `weight` fills the part
+/// `scaled` < 1 of its bin.
 std::uint32_t threshold(double weight, double scaled) {
   if (weight == 0) return 0;
   return static_cast<std::uint32_t>(std::clamp(std::round(scaled * 0x1p32), 1.0, 0x1p32 - 1));
@@ -43,7 +44,8 @@ AliasTable::AliasTable(std::span<const double> weights) {
       small.push_back(l);
     }
   }
-  // A bin left in `small` by rounding would keep itself although its weight may be 0.
+  // Rounding can leave a bin in `small`; without an alias it would return its own index even at
+  // weight 0.
   const auto heaviest = static_cast<std::uint32_t>(
       std::max_element(weights.begin(), weights.end()) - weights.begin());
   for (const auto s : small) {
@@ -53,10 +55,10 @@ AliasTable::AliasTable(std::span<const double> weights) {
 }
 
 void AliasTable::set_probabilities() {
-  // choose() returns bin i for the numbers from ceil(2^32 i / n) on.
+  // choose() returns bin i for the random numbers from ceil(2^32 i / n).
   const std::uint64_t n = bins_.size();
   const auto first = [n](std::uint64_t i) { return ((i << 32) + n - 1) / n; };
-  std::vector<double> draws(n);  // of 2^64; each term is an integer that a double holds to 2^-53
+  std::vector<double> draws(n);  // each index, of 2^64: sums of integers, to double precision
   for (std::uint64_t i = 0; i < n; ++i) {
     const auto width = static_cast<double>(first(i + 1) - first(i));
     const Bin& b = bins_[i];

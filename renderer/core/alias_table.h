@@ -10,15 +10,15 @@
 
 namespace lacuna {
 
-/// A discrete distribution sampled in constant time (Walker 1977, in Vose's form), in integers
-/// only. An index has the probability n / 2^64 if n of the 2^64 equally probable pairs of random
-/// numbers return it, and this is the probability that is stated, up to the rounding of a float.
-/// Weights are rounded to multiples of 2^-32 of a bin; one above 0 is never rounded to 0.
+/// A discrete distribution sampled in constant time (Walker 1977, in Vose's form), in integer
+/// arithmetic. If n of the 2^64 equally probable pairs of random numbers return an index, its
+/// probability is n / 2^64; resolve() and pmf() return exactly this, rounded to float. Weights are
+/// rounded to multiples of 2^-32 of a bin, positive ones never to 0.
 class AliasTable {
  public:
   AliasTable() = default;
   /// Weights need not be normalised. Throws std::invalid_argument on a negative or non-finite
-  /// weight. If all are 0 the table is empty.
+  /// weight. The table is empty if all weights are 0.
   explicit AliasTable(std::span<const double> weights);
 
   bool empty() const { return bins_.empty(); }
@@ -33,28 +33,28 @@ class AliasTable {
   };
   /// sample() in two steps: choose() prefetches the bin, resolve() reads it.
   std::uint32_t choose(Rng& rng) const { return choose(rng.next_u32()); }
-  /// choose() by 32 uniform bits.
+  /// choose() from 32 uniform bits.
   std::uint32_t choose(std::uint32_t uniform) const {
     const auto i = static_cast<std::uint32_t>((std::uint64_t{uniform} * bins_.size()) >> 32);
     __builtin_prefetch(&bins_[i]);
     return i;
   }
   Draw resolve(std::uint32_t chosen, Rng& rng) const { return resolve(chosen, rng.next_u32()); }
-  /// By 32 uniform bits.
+  /// resolve() from 32 uniform bits.
   Draw resolve(std::uint32_t chosen, std::uint32_t uniform) const {
     const Bin& b = bins_[chosen];
     if (uniform < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
     return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
-  /// sample() by the 64 bits of `point.x`, which get what is left within the bin: a uniform number
-  /// again, to n 2^-32, whatever the index; and by point.besides.
+  /// sample() from `point`: the upper half of x selects the bin, point.besides resolves it.
+  /// Afterwards x is the position within the bin, again uniform to n 2^-32 for each index.
   std::uint32_t sample(Rng::FinePoint& point) const {
     const std::uint32_t i = choose(static_cast<std::uint32_t>(point.x >> 32));
     point.x *= bins_.size();
     return resolve(i, point.besides).index;
   }
-  /// By `u` alone, uniform in [0, 1), which gets what is left within the part of the bin: a uniform
-  /// number again, with as many bits fewer as the index takes.
+  /// sample() from one number `u`, uniform in [0, 1). Afterwards `u` is the position within the
+  /// part of the bin, again uniform, with fewer bits by those that selected the index.
   Draw sample(double& u) const {
     const double at = u * static_cast<double>(bins_.size());
     const auto i = std::min(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(size() - 1));

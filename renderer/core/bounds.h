@@ -21,7 +21,7 @@ struct Bounds {
   /// Half the diagonal.
   double radius() const { return size().length() / 2; }
 
-  /// Projected areas, along unit direction `w`, of the visible sides of constant x, y and z.
+  /// Areas, projected along unit `w`, of the visible faces of constant x, y and z.
   V3d sides_across(const V3f& w) const {
     const V3d d = size();
     return {d.y * d.z * std::abs(double(w.x)), d.z * d.x * std::abs(double(w.y)),

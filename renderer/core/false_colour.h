@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// A colour for a label, a function of label and seed. The colours of neighbouring labels differ
-/// clearly. Components in [0.1, 1].
+/// A colour for a label: a hash of label and seed, so that neighbouring labels differ clearly.
+/// Components in [0.1, 1].
 inline Rgb false_colour(std::uint32_t label, std::uint64_t seed) {
   // The finaliser of SplitMix64 (Steele, Lea and Flood 2014).
   std::uint64_t h = label + seed * 0x9e3779b97f4a7c15u + 0x9e3779b97f4a7c15u;

@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// Throws MemoryLimitError if `bytes` exceed memory_to_take(); `what()` returns what they are for
-/// and how to need less. To be called before they are allocated.
+/// Throws MemoryLimitError if `bytes` exceed memory_to_take(). `what()` returns their purpose and
+/// how to need less. Call it before the allocation.
 template <class What>
 void require_free(double bytes, What&& what) {
   const auto free = double(memory_to_take());

@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-/// Allocates memory with 2 MiB pages: random reads of large tables, by every ray, would otherwise
-/// spend their time on address translation.
+/// Allocates memory in 2 MiB pages: with small pages, the random reads of large tables by every ray
+/// would spend their time on address translation.
 template <class T>
 struct HugePageAllocator {
   using value_type = T;
@@ -26,7 +26,7 @@ struct HugePageAllocator {
     const std::size_t bytes = n * sizeof(T);
     if (bytes < page) return static_cast<T*>(::operator new (bytes, std::align_val_t{alignof(T)}));
     void* memory = ::operator new (bytes, std::align_val_t{page});
-    madvise(memory, bytes, MADV_HUGEPAGE);  // only advice: where it fails, pages are small
+    madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: if it fails, pages are small
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t n) {

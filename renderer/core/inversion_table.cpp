@@ -11,8 +11,8 @@ InversionTable::InversionTable(std::span<const double> weights) {
   const auto [largest, sum] = WeightSum(weights);
   if (largest == 0) return;
 
-  // Ends of the intervals, of 2^32; then every weight above 0 gets at least one number, from the
-  // left, and from the right where that passed the end.
+  // Ends of the intervals, of 2^32. Each weight above 0 then gets at least one number: a pass from
+  // the left widens intervals, a pass from the right moves back those beyond the end.
   constexpr std::uint64_t all = std::uint64_t{1} << 32;
   const std::size_t n = weights.size();
   std::vector<std::uint64_t> ends(n);
@@ -28,7 +28,7 @@ InversionTable::InversionTable(std::span<const double> weights) {
   for (std::size_t i = n; i-- > 0;) {
     ends[i] = std::min(ends[i], limit);
     if (weights[i] > 0) {
-      if (limit == all) ends[i] = all;  // the last one gets what rounding left
+      if (limit == all) ends[i] = all;  // the last index takes the rounding error
       limit = ends[i] - 1;
     }
   }

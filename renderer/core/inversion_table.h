@@ -8,26 +8,26 @@
 
 namespace lacuna {
 
-/// A discrete distribution sampled by inversion, in integers only: larger numbers draw larger
-/// indices, so that numbers that are spread evenly draw indices that are. An index has the
-/// probability k / 2^32 if k of the 2^32 numbers return it, which is what is stated. Weights are
-/// rounded to such probabilities; one above 0 is never rounded to 0. A cutpoint for each index
-/// makes the expected time constant (Chen and Asau 1974).
+/// A discrete distribution sampled by inversion, in integer arithmetic. The index increases with
+/// the random number, so stratified numbers give stratified indices. If k of the 2^32 numbers
+/// return an index, its probability is k / 2^32; pmf() returns exactly this. Weights are rounded to
+/// such probabilities, positive ones never to 0. A cutpoint for each index makes the expected time
+/// constant (Chen and Asau 1974).
 class InversionTable {
  public:
   InversionTable() = default;
-  /// Weights need not be normalised; at most 2^31. Throws std::invalid_argument on a negative or
-  /// non-finite weight. If all are 0 the table is empty.
+  /// At most 2^31 weights, which need not be normalised. Throws std::invalid_argument on a negative
+  /// or non-finite weight. The table is empty if all weights are 0.
   explicit InversionTable(std::span<const double> weights);
 
   bool empty() const { return last_.empty(); }
 
   struct Draw {
     std::uint32_t index;
-    std::uint32_t begin;  ///< of the numbers that return it
-    std::uint64_t count;  ///< how many do
+    std::uint32_t begin;  ///< the first number that returns `index`
+    std::uint64_t count;  ///< of numbers that return it
   };
-  /// By 32 uniform bits. Requires !empty().
+  /// Samples an index from 32 uniform bits. Requires !empty().
   Draw draw(std::uint32_t uniform) const {
     std::uint32_t i = cutpoints_[(uniform * std::uint64_t{last_.size()}) >> 32];
     while (last_[i] < uniform) ++i;
@@ -43,7 +43,7 @@ class InversionTable {
   }
 
   std::uint32_t first_ = 0;          // the first index of weight above 0
-  std::vector<std::uint32_t> last_;  // of the numbers that return an index or one before it
+  std::vector<std::uint32_t> last_;  // the last number that returns an index up to this one
   std::vector<std::uint32_t> cutpoints_;
 };
 

@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// The Morton code of a point in a box, with 2^21 steps along each axis: points with similar codes
-/// are close to one another (Morton 1966).
+/// The Morton code of a point in a box, with 2^21 steps along the longest axis: points with similar
+/// codes are close together (Morton 1966).
 class MortonOrder {
  public:
   explicit MortonOrder(const Bounds& box) : low_(box.low) {

@@ -4,10 +4,10 @@
 
 namespace lacuna {
 
-/// Base-2 logarithm of eight normal numbers above 0, to within 2e-7 of itself: with the mantissa m
-/// in [sqrt(1/2), sqrt(2)), log m = 2 atanh((m - 1) / (m + 1)), of which five terms are enough.
+/// Base-2 logarithm of eight positive normal numbers, to a relative error of 2e-7: with the
+/// mantissa m in [sqrt(1/2), sqrt(2)), log m = 2 atanh((m - 1) / (m + 1)), to five terms.
 inline Float8 log2(Float8 x) {
-  // Counted from the exponent of sqrt(1/2), so that the mantissa lies around 1.
+  // Relative to the exponent of sqrt(1/2), so that the mantissa lies around 1.
   const Int8 exponent = (as_int(x) - Int8(0x3f3504f3)) >> 23;
   const Float8 m = as_float(as_int(x) - (exponent << 23));
   const Float8 z = (m - 1) / (m + 1);
@@ -18,7 +18,7 @@ inline Float8 log2(Float8 x) {
   return to_float(exponent) + sum * z;
 }
 
-/// 2^x of eight numbers up to 127, to within 3e-7 of itself; below -126: 0.
+/// 2^x of eight numbers up to 127, to a relative error of 3e-7; 0 below -126.
 inline Float8 exp2(Float8 x) {
   const Float8 least = -126.0F;
   const Mask8 inside = x >= least;

@@ -11,13 +11,13 @@
 
 namespace lacuna {
 
-/// Where the words of a stream come from that are not drawn anew, but kept and changed (primary
-/// samples: renderer/path/primary_samples.h).
+/// A source of random words for streams that are stored and mutated (primary samples:
+/// renderer/path/primary_samples.h).
 class RandomWords {
  public:
   using Block = std::array<std::uint32_t, 16>;
   virtual ~RandomWords() = default;
-  /// The next words of the stream.
+  /// Writes the next words of the stream.
   virtual void next(Block& out) = 0;
 };
 
@@ -25,9 +25,8 @@ class RandomWords {
 /// numbers: as easy as 1, 2, 3"). The stream is a pure function of (seed, iteration, path,
 /// purpose), so an image does not depend on threads, on their order, or on a kill and a resume.
 ///
-/// The numbers may also be the dimensions of a sample of a low-discrepancy sequence. Each of them
-/// alone is uniform, and so is what next2() draws; the streams of different samples of a sequence
-/// are not independent.
+/// A stream may instead be a sample of a low-discrepancy sequence, its numbers the dimensions. Each
+/// number, and each pair of next2(), is uniform; samples of one sequence are not independent.
 class Rng {
  public:
   /// The use of a stream; the streams of different purposes are independent.
@@ -58,20 +57,20 @@ class Rng {
                  static_cast<std::uint32_t>(path >> 32) | static_cast<std::uint32_t>(purpose) << 24,
                  static_cast<std::uint32_t>(iteration)} {}
 
-  /// The stream of `words`, which outlives it.
+  /// The stream of `words`, which must outlive it.
   explicit Rng(RandomWords& words) : Rng(0, 0, 0) {
     words_ = &words;
     source_ = Source::kept;
     vertex_ = static_cast<std::uint8_t>(numbers_.size() - 1);
   }
 
-  /// The dimensions of sample `index` of the sequence that `seed`, `sequence` and `purpose` name.
-  /// `sequence` < 2^56; `randomisation` < 2^31: sequences that differ in any of these are
-  /// independent. Only aligned runs of 2^m indices, m <= 32, are evenly spread.
+  /// Sample `index` of the low-discrepancy sequence of `seed`, `sequence`, `randomisation` and
+  /// `purpose`; sequences that differ in any of these are independent. `sequence` < 2^56,
+  /// `randomisation` < 2^31. Only aligned runs of 2^m indices, m <= 32, are well distributed.
   static Rng of_sequence(std::uint64_t seed, std::uint64_t sequence, std::uint32_t randomisation,
                          std::uint64_t index, Purpose purpose) {
     Rng rng(seed, 0, sequence, purpose);
-    // Counters that no independent stream reaches: its first counter begins at 0.
+    // No independent stream has this counter: their first word starts at 0.
     const Block key = philox({1U << 31 | randomisation, rng.counter_[1], rng.counter_[2],
                               static_cast<std::uint32_t>(index >> 32)},
                              rng.key_);
@@ -82,10 +81,10 @@ class Rng {
     return rng;
   }
 
-  /// Called at each vertex of a path. In a stream of kept words each vertex begins a block, so that
-  /// a change at one vertex leaves the others theirs. In a low-discrepancy sequence each begins at
-  /// a multiple of 8 dimensions, so that paths that took other numbers of them before still agree
-  /// on what each is for. Without effect in others.
+  /// Call it at each vertex of a path. With stored words each vertex begins a block, so a mutation
+  /// of one vertex keeps the numbers of the others. In a low-discrepancy sequence each vertex
+  /// begins at a multiple of 8 dimensions, so a dimension has the same use in paths that took
+  /// different numbers of them before. No effect in other streams.
   void next_vertex() { used_ = (used_ + vertex_) & ~std::size_t{vertex_}; }
 
   /// An independent stream, keyed by the next 64 bits of this one.
@@ -103,20 +102,20 @@ class Rng {
   /// Uniform in [0, 1), a multiple of 2^-24: never 1.
   float next() { return unit(next_u32()); }
 
-  /// Two independent uniforms in [0, 1); of a low-discrepancy sequence, a pair of dimensions.
+  /// Two independent uniforms in [0, 1); in a low-discrepancy sequence, a pair of dimensions.
   V2f next2() {
     used_ += used_ & pair_;
     const float a = next();
     return {a, next()};
   }
 
-  /// Uniform in [0, 1) to choose by among weights of any ratio, a multiple of 2^-53; two numbers.
+  /// Uniform in [0, 1), a multiple of 2^-53, to select by weights of any ratio. Takes two numbers.
   double next_choice() {
     const std::uint64_t high = next_u32();
     return static_cast<double>((high << 32 | next_u32()) >> 11) * 0x1p-53;
   }
 
-  /// A uniform to choose by, and two to place by, all independent, from three numbers.
+  /// A uniform to select by, and a point in the unit square: all independent, from three numbers.
   struct ChoiceAndPoint {
     double choice;  ///< in [0, 1), a multiple of 2^-48
     V2f point;      ///< as next2()
@@ -126,13 +125,13 @@ class Rng {
     const std::uint32_t b = next_u32();
     const std::uint32_t c = next_u32();
     const std::uint64_t a = next_u32();
-    // The bits that the point has no use for.
+    // The low bits, which the point does not use.
     const std::uint64_t choice = a << 16 | (b & 0xff) << 8 | (c & 0xff);
     return {static_cast<double>(choice) * 0x1p-48, {unit(b), unit(c)}};
   }
 
-  /// A point in the unit square, whose first coordinate may choose first and place by what is left,
-  /// and a number to choose by besides, all independent, from four numbers.
+  /// A point in the unit square whose x has enough bits to select an index first and to place by
+  /// the remainder, and an independent number to select by; from four numbers.
   struct FinePoint {
     std::uint64_t x;        ///< of 2^64
     std::uint32_t y;        ///< of 2^32
@@ -148,10 +147,10 @@ class Rng {
     return {high << 32 | low, y, next_u32()};
   }
 
-  /// Uniform in 0 ... n - 1, to n 2^-32 of each probability; n <= 2^32.
+  /// Uniform in 0 ... n - 1, n <= 2^32, each probability to within n 2^-32 of itself.
   std::uint64_t below(std::uint64_t n) { return (n * next_u32()) >> 32; }
 
-  /// True with probability `p`, to 2^-64: a draw of next() would round small ones up to 2^-24.
+  /// True with probability `p`, to 2^-64; next() < p would round small ones up to 2^-24.
   bool decide(float p) {
     const double scaled = double(p) * 0x1p32;
     const double whole = std::floor(scaled);
@@ -161,7 +160,7 @@ class Rng {
   }
 
   using Block = std::array<std::uint32_t, 4>;
-  /// The bijection itself; next_u32() gives the words of its values at successive counters.
+  /// The bijection of Philox; next_u32() returns the words of its values at successive counters.
   static Block philox(Block c, std::array<std::uint32_t, 2> k) {
     for (int round = 0; round < 10; ++round) {
       const std::uint64_t p0 = multiplier_0 * c[0];
@@ -191,7 +190,7 @@ class Rng {
     }
   }
 
-  // Four blocks at once, one in each 64-bit lane (values in the low halves): a quarter of the work.
+  // Computes four blocks at once, one in each 64-bit lane (values in the low halves).
   void refill_by_philox() {
     const __m256i low = _mm256_set1_epi64x(0xffffffff);
     const auto spread = [](std::uint32_t v) { return _mm256_set1_epi64x(v); };
@@ -211,7 +210,8 @@ class Rng {
       k0 += weyl_0;
       k1 += weyl_1;
     }
-    // Words 0 and 1, and 2 and 3, of each block side by side; then each block's halves together.
+    // Interleaves words 0 and 1, and 2 and 3, of each block; then brings each block's halves
+    // together.
     const __m256i w01 = _mm256_or_si256(c0, _mm256_slli_epi64(c1, 32));
     const __m256i w23 = _mm256_or_si256(c2, _mm256_slli_epi64(c3, 32));
     const __m256i even = _mm256_unpacklo_epi64(w01, w23);  // blocks 0 and 2
@@ -228,7 +228,7 @@ class Rng {
   std::size_t used_ = 16;
   Source source_ = Source::philox;
   std::uint8_t pair_ = 0;    // 1: next2() begins at an even number
-  std::uint8_t vertex_ = 0;  // a vertex begins at a multiple of that + 1
+  std::uint8_t vertex_ = 0;  // a vertex begins at a multiple of vertex_ + 1
   SobolSample sobol_;
   RandomWords* words_ = nullptr;
   std::array<std::uint32_t, 2> key_;

@@ -10,7 +10,7 @@ namespace lacuna {
 inline constexpr float pi = std::numbers::pi_v<float>;
 inline constexpr float inv_pi = 1 / pi;
 
-/// Barycentric (u, v) of a point uniform on a triangle (Heitz 2019, "A Low-Distortion Map Between
+/// Barycentric (u, v) of a uniform point on a triangle (Heitz 2019, "A Low-Distortion Map Between
 /// Triangle and Square"): keeps neighbours together, needs no square root.
 inline V2f sample_triangle(const V2f& u) {
   if (u.y > u.x) {

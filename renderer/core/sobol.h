@@ -7,14 +7,14 @@
 
 namespace lacuna {
 
-/// A sample of a low-discrepancy sequence of any number of dimensions: its dimensions are padded
-/// from pairs, each the first two dimensions of Sobol' in an order and with an Owen scrambling of
-/// their own, by hashing (Burley 2020, "Practical hash-based Owen scrambling"). Any aligned block
-/// of 2^m samples has one point in each elementary interval of area 2^-m of each pair; different
-/// pairs, and different keys, are independent.
+/// A sample of a low-discrepancy sequence of any number of dimensions, padded from pairs: each pair
+/// is the first two dimensions of Sobol' with its own hashed shuffling and Owen scrambling (Burley
+/// 2020, "Practical hash-based Owen scrambling"). In each pair, any aligned block of 2^m samples
+/// has one point in each elementary interval of area 2^-m. Different pairs, and different keys, are
+/// independent.
 class SobolSample {
  public:
-  /// `key`: the randomisation, uniform bits.
+  /// `key`: uniform random bits that select the randomisation.
   SobolSample(std::array<std::uint32_t, 2> key, std::uint32_t index)
       : key_(key), reversed_(reverse(index)) {}
   SobolSample() = default;
@@ -25,7 +25,7 @@ class SobolSample {
   void words(std::uint32_t block, Words& out) const {
     const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     const __m256i pair = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(8 * block)), lane);
-    // One seed for each: by the golden ratio and two halves of the key, so that pairs do not share.
+    // A seed for each pair, from multiples of the golden ratio and both halves of the key.
     const __m256i own = hash(_mm256_add_epi32(spread(key_[0]), times(pair, 0x9e3779b9)));
     const __m256i seed_x = hash(_mm256_xor_si256(own, spread(key_[1])));
     const __m256i seed_y = hash(_mm256_add_epi32(seed_x, spread(key_[1] ^ 0x85ebca6b)));
@@ -62,8 +62,8 @@ class SobolSample {
     return fold(v, 16);
   }
 
-  /// Owen's nested scrambling in bits that are reversed: each bit may flip by the bits below it
-  /// alone (Laine and Karras 2011, with the constants of Vegdahl 2021).
+  /// Owen's nested scrambling of reversed bits: whether a bit flips depends on the bits below it
+  /// only (Laine and Karras 2011, with the constants of Vegdahl 2021).
   static __m256i permute(__m256i v, __m256i seed) {
     const auto flip = [](__m256i x, std::uint32_t even) {
       return _mm256_xor_si256(x, times(x, even));
@@ -86,8 +86,8 @@ class SobolSample {
     return _mm256_shuffle_epi8(_mm256_or_si256(_mm256_slli_epi32(low, 4), high), bytes);
   }
 
-  /// The second dimension of Sobol', its bits reversed: the index times Pascal's triangle modulo 2,
-  /// whose bit (r, c) is set where c contains the bits of r.
+  /// The second dimension of Sobol', with reversed bits: the index times Pascal's triangle modulo
+  /// 2, whose element (r, c) is 1 if the bits of r are a subset of those of c.
   static __m256i second_reversed(__m256i index) {
     const auto step = [](__m256i v, int shift, std::uint32_t mask) {
       return _mm256_xor_si256(v, _mm256_and_si256(_mm256_srli_epi32(v, shift), spread(mask)));

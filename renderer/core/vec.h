@@ -30,7 +30,7 @@ inline float max_component(const V3f& v) { return std::max(v.x, std::max(v.y, v.
 inline float max_abs_component(const V3f& v) {
   return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
 }
-/// Rec. 709 luminance, the scalar from which selection probabilities are computed.
+/// Rec. 709 luminance; selection probabilities are computed from it.
 template <class T>
 T luminance(const T& r, const T& g, const T& b) {
   return 0.2126F * r + 0.7152F * g + 0.0722F * b;

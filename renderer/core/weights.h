@@ -7,10 +7,10 @@
 
 namespace lacuna {
 
-/// The largest of a distribution's weights, and the sum of all divided by it: so neither tiny nor
-/// huge weights overflow their sum.
+/// The largest weight of a distribution, and the sum of all weights divided by it, so that the sum
+/// neither overflows nor underflows.
 struct WeightSum {
-  double largest = 0;  ///< 0: all are
+  double largest = 0;  ///< 0 if all weights are
   double sum = 0;      ///< of weight / largest
 
   /// Throws std::invalid_argument on a negative or non-finite weight.

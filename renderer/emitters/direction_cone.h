@@ -22,7 +22,7 @@ struct DirectionCone {
     if (std::min(angle + a.spread, std::numbers::pi) <= b.spread) return b;
     const double spread = (a.spread + angle + b.spread) / 2;
     if (spread >= std::numbers::pi) return everything();
-    // Turns the axis of `a` towards that of `b`.
+    // Rotate the axis of `a` towards that of `b`.
     const V3d across = b.axis - a.axis * a.axis.dot(b.axis);
     const double length = across.length();
     if (!(length > 0)) return everything();

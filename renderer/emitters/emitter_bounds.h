@@ -8,17 +8,17 @@
 
 namespace lacuna {
 
-/// What a light tree knows of an emitter, or of a group of emitters.
+/// The data of a light tree for an emitter, or for a group of emitters.
 struct EmitterBounds {
-  Bounds box;          ///< of all points that emit
-  DirectionCone axes;  ///< of the normals of surfaces, and of the directions in which spots shine
-  double reach = 0;    ///< largest angle to an axis at which light leaves; radians, in [0, pi]
-  /// Surfaces emit along their normals and against them.
+  Bounds box;          ///< of all emitting points
+  DirectionCone axes;  ///< of the normals of surfaces, and of the axes of spots
+  double reach = 0;    ///< largest angle to an axis at which light is emitted; radians, in [0, pi]
+  /// Whether surfaces emit from both sides.
   bool both_sides = false;
-  /// Largest radiant intensity in any direction, of groups the sum; > 0, in any one unit.
+  /// Largest radiant intensity in any direction, for groups the sum; > 0, in any common unit.
   double intensity = 0;
 
-  /// Bounds both.
+  /// Bounds of both.
   static EmitterBounds join(const EmitterBounds& a, const EmitterBounds& b) {
     EmitterBounds r = a;
     for (int k = 0; k < 3; ++k) {
@@ -28,7 +28,7 @@ struct EmitterBounds {
     r.both_sides = a.both_sides || b.both_sides;
     DirectionCone other = b.axes;
     if (r.both_sides && other.axis.dot(a.axes.axis) < 0) {
-      // Both directions of an axis mean the same, if all surfaces emit from both sides.
+      // If all surfaces emit from both sides, an axis and its opposite are equivalent.
       if (a.both_sides && b.both_sides) other.axis = -other.axis;
     }
     r.axes = DirectionCone::join(a.axes, other);

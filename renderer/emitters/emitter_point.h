@@ -23,21 +23,21 @@ struct EmitterPoint {
   V3f ng{0, 0, 0};          ///< area: unit normal of the front; spot: unit axis
   Rgb emission{0, 0, 0};    ///< radiance; W/sr (spot: on its axis); W/m^2 of a directional light
   /// Density with which EmitterSet::sample() returns the point, including the selection of the
-  /// emitter. Environment: per steradian. Delta: the selection probability.
+  /// emitter. Environment: per steradian. Delta emitter: the selection probability.
   Pdf<Area> pdf{};
   SpotCones cones;            ///< of a spot
   std::uint32_t entry = ~0U;  ///< the emitter's number in its EmitterSet
-  /// The density of the point in next event estimation at one receiver, over `pdf`; 1 where both
-  /// select by power.
+  /// The point's density in next event estimation at one receiver, over `pdf`; 1 if both select
+  /// emitters by power.
   float next_event_ratio = 1;
-  float across = 0;  ///< infinite: projected area of the scene's bounding box from that direction
-  /// Point and spot: the surfaces that it lies in; null: none.
+  float across = 0;  ///< infinite: projected area of the scene's bounding box in that direction
+  /// Point and spot lights: the surfaces that contain it; null if there are none.
   const SurfaceContact* contact = nullptr;
 
   /// Density of the point in next event estimation.
   Pdf<Area> next_event_pdf() const { return next_event_ratio * pdf; }
   bool infinite() const { return kind == Kind::directional || kind == Kind::environment; }
-  /// Paths cannot hit it.
+  /// Whether paths cannot hit it.
   bool delta() const {
     return kind == Kind::point || kind == Kind::spot || kind == Kind::directional;
   }
@@ -49,17 +49,18 @@ struct EmitterPoint {
     return emission;
   }
 
-  /// The origin of a ray along unit `w` from a finite point, beside the surfaces that it lies in.
+  /// The origin of a ray along unit `w` from a finite point, offset from the surfaces that contain
+  /// it.
   V3f origin(const V3f& w) const {
     return kind == Kind::area ? offset_origin(x, ng, offset, w) : origin_in_space(w);
   }
-  /// The end of a segment of length `distance` that arrives along -`w` at a finite point.
+  /// The end of a segment of length `distance` along -`w` to a finite point.
   V3f end(const V3f& w, float distance) const {
     return kind == Kind::area ? offset_end(x, ng, offset, w, distance) : origin_in_space(w);
   }
 
   /// Density with which sample_leaving() continues a light path along unit `w`. Infinite emitters:
-  /// uniform per area across `w`.
+  /// uniform per area perpendicular to `w`.
   Pdf<SolidAngle> leaving_pdf(const V3f& w) const {
     switch (kind) {
       case Kind::area: {

@@ -10,8 +10,8 @@ namespace lacuna {
 
 namespace {
 
-/// Luminous power; of a directional light an estimate. It determines the emitter's selection
-/// probability, not its contribution.
+/// Luminous power, for a directional light an estimate. It determines only the emitter's selection
+/// probability.
 double power(const PunctualLight& light, double scene_radius) {
   const double i = luminance(light.intensity);
   switch (light.kind) {
@@ -55,11 +55,11 @@ EmitterSet::EmitterSet(const SceneData& scene, std::unique_ptr<Environment> envi
   if (pointwise) select_pointwise(powers);
 }
 
-/// Selection by power alone would hardly ever send a light path into a room whose lamps are dimmer
-/// by decades than those of another. A share of all selections is therefore uniform over sources,
-/// meshes and lights, and by power within each: a defensive mixture (Hesterberg 1995, "Weighted
-/// Average Importance Sampling and Defensive Mixture Distributions"). Every probability is at least
-/// 1 - `share` times that by power, so no variance grows by more than 1 / (1 - share) = 8 / 7.
+/// With selection by power alone, light paths would hardly ever start in a room with lamps decades
+/// dimmer than those of another. Part of all selections is therefore uniform over sources, meshes
+/// and lights, and by power within each: a defensive mixture (Hesterberg 1995, "Weighted Average
+/// Importance Sampling and Defensive Mixture Distributions"). Every probability is at least 1 -
+/// `share` times that by power, so no variance grows by more than 1 / (1 - share) = 8 / 7.
 std::vector<double> EmitterSet::selection_weights(std::span<const double> powers) const {
   constexpr double share = 0.125;
   std::vector<double> of_sources(sources_.size());
@@ -122,8 +122,8 @@ TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry, double power) const {
   return t;
 }
 
-/// Of the emission of a triangle. 0 only where it is black everywhere: what it emits is never
-/// missed.
+/// Mean luminance of the emission of a triangle; 0 only if it is black everywhere, so that no
+/// emission is missed.
 double EmitterSet::mean_luminance(const Mesh& mesh, std::uint32_t triangle,
                                   const TextureMeans& means) {
   const Material& material = scene_->materials[mesh.material];

@@ -18,30 +18,30 @@
 
 namespace lacuna {
 
-/// All emitters of a scene. An emitter is selected by its power, an eighth of the time by source
-/// first, so the density of a point on an emitter does not depend on the receiver; or, with a light
-/// tree, for a given receiver.
+/// All emitters of a scene. An emitter is selected by its power, with probability 1/8 by source
+/// first; then the density of a point on an emitter does not depend on the receiver. With a light
+/// tree, an emitter can instead be selected for a given receiver.
 class EmitterSet {
  public:
-  /// `bounds` is the bounding box of all triangles. The power of an infinite emitter is the power
+  /// `bounds`: the bounding box of all triangles. The power of an infinite emitter is its power
   /// through the great disk of the box's sphere; its light paths start on the sides of the box.
   /// Keeps a pointer to `scene`; the textures of emission and of masks must be decoded.
-  /// `pointwise`: build what selects an emitter for a receiver.
+  /// `pointwise`: build the selection for a receiver.
   EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment, const Bounds& bounds,
              bool pointwise);
 
   bool empty() const { return selection_.empty(); }
   std::size_t size() const { return entries_.size(); }
 
-  /// An emitter, and the numbers that place a point on it.
+  /// An emitter, and the random numbers that place a point on it.
   struct Selected {
     std::uint32_t entry = 0;
     Rng::FinePoint at{};
   };
-  /// Selects an emitter and prefetches its memory; called before the ray to the receiver is traced.
-  /// Requires !empty().
+  /// Selects an emitter by power and prefetches its memory; called before the ray to the receiver
+  /// is traced. Requires !empty().
   Selected choose(Rng& rng) const { return choose(rng.next_fine_point()); }
-  /// n equidistant values of `at.x` select n different emitters if all n have the same power.
+  /// For n equidistant values of `at.x`, selects n different emitters if all n have equal power.
   Selected choose(Rng::FinePoint at) const {
     const std::uint32_t i = selection_.sample(at);
     prefetch(i);
@@ -49,10 +49,10 @@ class EmitterSet {
   }
   /// Prefetches what sample() reads of the emitter `chosen`.
   void prefetch(std::uint32_t chosen) const { __builtin_prefetch(&entries_[chosen]); }
-  /// Selects an emitter for a receiver; null unless requested.
+  /// The selection for a receiver; null unless built.
   const PointwiseSelection* pointwise() const { return pointwise_ ? &*pointwise_ : nullptr; }
-  /// Samples a point on the selected emitter; its density includes the selection. Inline, because
-  /// next event estimation calls it at every vertex, nearly always for a triangle.
+  /// Samples a point on the selected emitter; its density includes the selection. Inline: next
+  /// event estimation calls it at every vertex, nearly always for a triangle.
   EmitterPoint sample(const Selected& selected) const {
     const Entry& e = entries_[selected.entry];
     const Source& source = sources_[e.source];
@@ -71,25 +71,25 @@ class EmitterSet {
       p.emission = varying_emission(source, selected.entry, b);
     return p;
   }
-  /// Samples the first edge of a light path from the point `e`.
+  /// Samples the first edge of a light path from point `e`.
   std::optional<Leaving> sample_first_edge(const EmitterPoint& e, Rng& rng) const {
     return sample_leaving(e, bounds_, rng);
   }
 
-  /// Density with which sample() returns a point of triangle `triangle` of `mesh`, whose emitter is
+  /// Density with which sample() returns a point of triangle `triangle` of `mesh` if emitters are
   /// selected by power.
   Pdf<Area> pdf(std::uint32_t mesh, std::uint32_t triangle) const;
-  /// The point of an emitting surface that a path hit, as sample() would return it. `radiance`: the
-  /// emission there.
+  /// The point on an emitting surface hit by a path, as sample() would return it. `radiance`: its
+  /// emission.
   EmitterPoint hit(const Surface& s, const Rgb& radiance) const;
   /// The unit direction `w` in which a path left the scene, as sample() would return it.
   EmitterPoint hit_background(const V3f& w) const;
-  /// Radiance that arrives from direction `w` at infinity.
+  /// Radiance from direction `w` at infinity.
   Rgb background(const V3f& w) const;
   const Environment* environment() const { return environment_.get(); }
   /// The name of the mesh or light of an emitter (EmitterPoint::entry).
   std::string name(std::uint32_t entry) const;
-  /// How many texels, and sums of texels, were read to estimate the power of textured triangles.
+  /// The number of texels, and sums of texels, read to estimate the power of textured triangles.
   std::uint64_t texels_read() const { return texels_read_; }
 
  private:
@@ -100,18 +100,18 @@ class EmitterSet {
     bool both_sides = false;
     bool textured = false;    // emission varies over the surface
     Rgb emission{0, 0, 0};    // of a mesh
-    std::uint32_t index = 0;  // of the mesh or of the light
+    std::uint32_t index = 0;  // index of the mesh or light
     std::uint32_t first_entry = 0;
-    std::uint32_t mask = none;  // in masks_
+    std::uint32_t mask = none;  // index in masks_
     double sides() const { return both_sides ? 2 : 1; }
   };
   /// A triangle or a light; sampling reads one cache line.
   struct alignas(64) Entry : TriangleShape {
-    Pdf<Area> pdf{};  // selection included
+    Pdf<Area> pdf{};  // including the selection
     std::uint32_t source = 0;
   };
 
-  /// Of the textures of emission, by their number; each is built when it is first needed.
+  /// Means of the emission textures, by texture index; built at the first use.
   using MeansOfTextures = std::map<int, TextureMeans>;
   void add_mesh(std::uint32_t mesh, MeansOfTextures& means, std::vector<double>& powers);
   double mean_luminance(const Mesh& mesh, std::uint32_t triangle, const TextureMeans& means);
@@ -119,9 +119,10 @@ class EmitterSet {
   std::vector<double> selection_weights(std::span<const double> powers) const;
   void select_pointwise(std::span<const double> powers);
   void add_light(const Source& source, double power, std::vector<double>& powers);
-  /// sample() of an emitter that is no triangle.
+  /// sample() of an emitter other than a triangle.
   EmitterPoint sample_light(const Selected& selected) const;
-  /// At barycentric `b` of the triangle `chosen` of a mesh with a texture of emission or a mask.
+  /// Emission at barycentric `b` of triangle `chosen`, of a mesh with an emission texture or a
+  /// mask.
   Rgb varying_emission(const Source& source, std::uint32_t chosen, const V2f& b) const;
   EmitterPoint sample_environment(const Rng::FinePoint& at) const;
   EmitterPoint sample_punctual(const PunctualLight& light) const;
@@ -132,10 +133,10 @@ class EmitterSet {
   std::unique_ptr<Environment> environment_;
   std::vector<Source> sources_;
   HugeVector<Entry> entries_;
-  std::vector<AlphaMask> masks_;  // of meshes that have one: masked points do not emit
+  std::vector<AlphaMask> masks_;  // of meshes with a mask: masked points do not emit
   AliasTable selection_;
   std::optional<PointwiseSelection> pointwise_;
-  std::vector<std::uint32_t> first_entry_;  // of each mesh; none: it does not emit
+  std::vector<std::uint32_t> first_entry_;  // of each mesh; none if it does not emit
   std::uint32_t environment_entry_ = none;
   std::uint64_t texels_read_ = 0;
 };

@@ -13,8 +13,8 @@ Environment::Environment(int width, int height, std::vector<float> rgb, float sc
       scale_(scale),
       cos_rotation_(std::cos(rotation)),
       sin_rotation_(std::sin(rotation)) {
-  // The mean of a bilinear interpolant over a texel is (1/8, 6/8, 1/8) of the texel and its
-  // neighbours, along each axis.
+  // The mean of a bilinear interpolant over a texel weights the texel and its neighbours by (1/8,
+  // 6/8, 1/8) along each axis.
   constexpr std::array<double, 3> kernel{0.125, 0.75, 0.125};
   std::vector<double> weights(static_cast<std::size_t>(width));
   std::vector<double> of_rows;
@@ -56,7 +56,7 @@ Rgb Environment::texel(int x, int y) const {
 V2f Environment::to_image(const V3f& w) const {
   const float x = cos_rotation_ * w.x - sin_rotation_ * w.z;
   const float z = sin_rotation_ * w.x + cos_rotation_ * w.z;
-  const float phi = std::atan2(x, -z);  // 0 at -z, growing towards +x
+  const float phi = std::atan2(x, -z);  // 0 at -z, increasing towards +x
   const float theta = std::acos(std::clamp(w.y, -1.0F, 1.0F));
   return {(phi / (2 * pi) + 0.5F) * static_cast<float>(width_),
           theta / pi * static_cast<float>(height_)};
@@ -78,7 +78,7 @@ Environment::Sample Environment::sample(const Rng::FinePoint& at) const {
   const auto high = static_cast<std::uint32_t>(at.x >> 32);
   const InversionTable::Draw row = rows_.draw(at.y);
   const InversionTable::Draw column = texels_[row.index].draw(high);
-  // What is left of the numbers within their texel.
+  // The remainders of the numbers place the direction within its texel.
   const double v = (double(at.y - row.begin) + 0.5) / double(row.count);
   const double rest = double(high - column.begin) + double(at.x & 0xffffffff) * 0x1p-32;
   const double u = rest / double(column.count);

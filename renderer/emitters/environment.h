@@ -8,10 +8,10 @@
 
 namespace lacuna {
 
-/// An environment light at infinity, given by an equirectangular image: bilinear in the image, y
-/// up, its centre column along -z. Directions are sampled by row and texel, which keeps points that
-/// are spread evenly spread. The weight of a texel is the exact integral of the bilinear radiance
-/// over it, times its row's solid angle, so every direction that emits has a density above 0.
+/// An environment light at infinity, given by an equirectangular image: bilinear, y up, centre
+/// column along -z. Directions are sampled by row, then texel, which preserves stratification. The
+/// weight of a texel is the exact integral of the bilinear radiance over it, times its row's solid
+/// angle, so every direction with radiance has a density above 0.
 class Environment {
  public:
   /// `rgb`: width x height x 3 radiances, top row first, finite and >= 0. `rotation` in radians,
@@ -30,7 +30,7 @@ class Environment {
   double integral() const { return integral_; }
 
  private:
-  V2f to_image(const V3f& w) const;  // in texels, texel centres at half-integers
+  V2f to_image(const V3f& w) const;  // texels, texel centres at half-integers
   Rgb texel(int x, int y) const;
   double texel_solid_angle(int y) const;
   float pdf(std::uint32_t x, std::uint32_t y) const;

@@ -7,17 +7,17 @@ namespace lacuna {
 
 namespace {
 
-/// The unit direction at 1 - cos `x` of the angle to `axis`, and at the angle 2 pi `u` around it.
+/// The unit direction at an angle to `axis` with 1 - cos = `x`, at the azimuth 2 pi `u`.
 V3f around(const V3f& axis, float x, float u) {
   const float s = std::sqrt(x * (2 - x));
   const float phi = 2 * pi * u;
   return Frame(axis).to_world({s * std::cos(phi), s * std::sin(phi), 1 - x});
 }
 
-/// A unit direction, uniform.
+/// A uniform unit direction.
 V3f everywhere(const V2f& u) { return around(V3f(0, 0, 1), 2 * u.x, u.y); }
 
-/// `l` with its throughput, for a point that emits `emitted`, cosine included; none where that is
+/// Sets the throughput of `l` for a point that emits `emitted`, cosine included; none if it is
 /// black.
 std::optional<Leaving> carrying(const Rgb& emitted, Leaving l, const EmitterPoint& e) {
   if (is_black(emitted) || !l.pdf.positive() || !e.pdf.positive()) return std::nullopt;
@@ -28,13 +28,14 @@ std::optional<Leaving> carrying(const Rgb& emitted, Leaving l, const EmitterPoin
 std::optional<Leaving> leaving_spot(const EmitterPoint& e, Rng& rng) {
   const V2f u = rng.next2();
   const float x = e.cones.sample(u.x);
-  // By the angle itself: at the edge of a narrow cone, the rounded direction may lie outside.
+  // Falloff from the sampled angle: at the edge of a narrow cone, the rounded direction may lie
+  // outside.
   const V3f w = around(e.ng, x, u.y);
   return carrying(e.emission * e.cones.falloff(x), {.ray = {e.origin(w), w}, .pdf = e.cones.pdf()},
                   e);
 }
 
-/// A point on the sides of `box` that face unit direction `w`, uniform in projected area.
+/// A point on the sides of `box` that face unit `w`, uniform in projected area.
 V3d sample_silhouette(const Bounds& box, const V3f& w, Rng& rng) {
   const V3d sides = box.sides_across(w);
   const auto [choice, at] = rng.next_choice_and_point();
@@ -51,7 +52,7 @@ V3d sample_silhouette(const Bounds& box, const V3f& w, Rng& rng) {
 }
 
 Ray leaving_infinity(const V3f& to_light, const Bounds& scene, Rng& rng) {
-  // From outside the box by its own size, so that what lies on its sides is met too.
+  // Start beyond the box by its radius, so that the ray also hits surfaces on its sides.
   const V3d from = sample_silhouette(scene, to_light, rng) + V3d(to_light) * scene.radius();
   return {V3f(from), -to_light};
 }

@@ -12,14 +12,14 @@ namespace lacuna {
 /// The first edge of a light path.
 struct Leaving {
   Ray ray;
-  Pdf<SolidAngle> pdf{};    ///< EmitterPoint::leaving_pdf() of the ray's direction
+  Pdf<SolidAngle> pdf{};    ///< EmitterPoint::leaving_pdf() in the ray's direction
   Rgb throughput{0, 0, 0};  ///< emission times cosine over the densities of point and direction
 };
 
 /// Samples the first ray of a light path from `e`: with density cos / pi from an area light,
-/// uniform over directions from a point light, uniform in the cone of a spot light, and uniform
-/// over the silhouette of the scene's bounding box from infinity, so that every ray of a
-/// directional light enters the box. Nothing where `e` emits no light.
+/// uniform over directions from a point light, uniform in the cone of a spot light, and from
+/// infinity uniform over the silhouette of the scene's bounding box, so that every ray of a
+/// directional light enters the box. None if `e` emits nothing in the sampled direction.
 std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene, Rng& rng);
 
 }  // namespace lacuna

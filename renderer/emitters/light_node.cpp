@@ -9,19 +9,19 @@ namespace {
 
 /// Rounding errors of positions, relative to the largest coordinate.
 constexpr double few_roundings = 0x1p-20;
-/// Half of what a number in 8 bits may differ by; less, so that those of a single axis stay.
+/// Half a step of an 8-bit number, reduced so that the cone of a single axis is not widened.
 constexpr double half_step = 0.499 / 127;
-/// Cosine by which a reach is widened, because axes and angles are rounded to 8 bits.
+/// Margin of a reach, in its cosine: axes and angles are rounded to 8 bits.
 constexpr double reach_margin = 0.02;
-/// Intensities below that share of a node's largest count as that.
+/// Lower bound of intensities relative to a node's largest; smaller ones are raised to it.
 constexpr float least_intensity = 0x1p-100F;
 
-/// A number in [-1, 1], times 127.
+/// A number in [-1, 1], times 127, rounded.
 std::int8_t eight_bits(double v) {
   return static_cast<std::int8_t>(std::lround(127 * std::clamp(v, -1.0, 1.0)));
 }
 
-/// LightNode::r of at least `v` >= 0.
+/// LightNode::r, rounded up from `v` >= 0.
 std::uint16_t radius_above(double v) {
   auto f = static_cast<float>(v);
   if (double(f) < v) f = std::nextafter(f, std::numeric_limits<float>::max());
@@ -30,7 +30,7 @@ std::uint16_t radius_above(double v) {
   return static_cast<std::uint16_t>((bits + less) >> LightNode::radius_shift);
 }
 
-/// LightNode::intensity nearest to `v` in (0, 1].
+/// LightNode::intensity, rounded from `v` in (0, 1].
 std::uint16_t intensity_near(double v) {
   const float f = std::max(static_cast<float>(v), least_intensity);
   constexpr std::uint32_t half = 1U << (LightNode::intensity_shift - 1);
@@ -62,7 +62,7 @@ LightNode::LightNode(std::span<const EmitterBounds> children)
   step = static_cast<float>(max_component(centres.size()) / 255);
   for (std::size_t k = 0; k < children.size(); ++k) {
     const EmitterBounds& c = children[k];
-    V3d off(0, 0, 0);  // from the centre that is kept
+    V3d off(0, 0, 0);  // from the rounded centre
     for (int a = 0; a < 3; ++a) {
       const double along = centre_of(c)[a] - double(origin[a]);
       const double q = step > 0 ? std::clamp(std::round(along / double(step)), 0.0, 255.0) : 0.0;
@@ -74,7 +74,7 @@ LightNode::LightNode(std::span<const EmitterBounds> children)
     for (std::size_t a = 0; a < 3; ++a) {
       back[a][k] = eight_bits(-c.axes.axis[static_cast<int>(a)]);
     }
-    // Rounded to a wider cone.
+    // Round to a wider cone.
     cos_spread[k] = eight_bits(std::cos(c.axes.spread) - half_step);
     sin_spread[k] = eight_bits(std::sin(c.axes.spread) + half_step);
     cos_reach[k] = eight_bits(std::cos(c.reach) - reach_margin);

@@ -9,9 +9,10 @@ namespace lacuna {
 
 namespace {
 
-/// The share of each node's choices that is uniform.
+/// The uniform fraction of each node's selections.
 constexpr float uniform_share = 0x1p-16F;
-/// What it adds to the sums over the children up to each of so many, of their total.
+/// Its contribution to the prefix sums of the children's weights, relative to their total, for each
+/// number of children.
 constexpr auto uniform_sums = [] {
   std::array<std::array<float, 8>, 9> sums{};
   for (std::size_t n = 1; n < sums.size(); ++n) {
@@ -21,16 +22,16 @@ constexpr auto uniform_sums = [] {
   }
   return sums;
 }();
-/// Weight of an emitter seen from behind, against one seen from its axis.
+/// Relative weight of an emitter seen from behind.
 constexpr float least_emission = 0x1p-10F;
-/// Radius over distance up to which a bundle is drawn from by intensity: what it looks like from
-/// there varies by a fourth over the bundle.
+/// Radius over distance up to which a bundle's emitters are selected by intensity: its appearance
+/// then varies by a fourth over the bundle.
 constexpr float narrow = 0x1p-3F;
-/// Squared distances below it would overflow the weights.
+/// Lower bound of squared distances: smaller ones would overflow the weights.
 constexpr float least_distance2 = 1e-32F;
-/// Sums of weights below it have no room for a uniform share.
+/// Smaller sums of weights have no precision for the uniform fraction.
 constexpr float least_total = 0x1p-100F;
-/// Of a sine, times 127, whose root is taken.
+/// Lower bound of a squared sine, times 127^2, before the square root.
 constexpr float least_sine2 = 1e-12F;
 
 /// All ones in the lanes whose bit is set.
@@ -40,20 +41,20 @@ __m256 lanes(std::uint8_t bits) {
   return _mm256_castsi256_ps(_mm256_cmpeq_epi32(set, each));
 }
 
-/// Sums of the lanes up to each, non-decreasing whatever the rounding.
+/// Prefix sums of the lanes, non-decreasing despite rounding.
 __m256 sums_up_to(__m256 v) {
   const auto shifted = [](__m256 x, auto bytes) {
     return _mm256_castsi256_ps(_mm256_slli_si256(_mm256_castps_si256(x), bytes()));
   };
   v = _mm256_add_ps(v, shifted(v, [] { return 4; }));
   v = _mm256_add_ps(v, shifted(v, [] { return 8; }));
-  // The last of four is summed in another order than the third.
+  // The sum of four lanes has another order of additions than the sum of three.
   v = _mm256_max_ps(v, shifted(v, [] { return 4; }));
   const __m256 low = _mm256_permute_ps(_mm256_permute2f128_ps(v, v, 0x08), 0xff);
   return _mm256_add_ps(v, low);
 }
 
-/// The largest float that is not above `v` >= 0: it is below a float if and only if `v` is.
+/// The largest float not above `v` >= 0: it is below a float if and only if `v` is.
 float round_down(double v) {
   return static_cast<float>(
       std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) & ~std::uint64_t{0x1fffffff}));
@@ -61,19 +62,19 @@ float round_down(double v) {
 
 }  // namespace
 
-/// A receiver as the children of a node see it, and what they weigh for it.
+/// A receiver relative to the children of a node, and their weights for it.
 struct LightTree::Geometry {
-  __m256 inverse;  // of the distance
-  __m256 along;    // the cosine, at most, at the receiver; may be above 1
-  __m256 back;     // the cosine, at most, of the angle to the axis of emission, times 127
+  __m256 inverse;  // 1 / distance
+  __m256 along;    // upper bound of the cosine at the receiver; may exceed 1
+  __m256 back;     // upper bound of the cosine of the angle to the axis of emission, times 127
   __m256 weight;   // of each child: see weigh()
 };
 
-/// The sums of the weights of a node's children for one receiver, with the uniform share.
+/// The prefix sums of the weights of a node's children for one receiver, with the uniform fraction.
 struct LightTree::Sums {
-  alignas(32) std::array<float, 16> up_to;  // [7 + i]: the sum of the children before i
+  alignas(32) std::array<float, 16> up_to;  // [7 + i]: the sum over the children before i
   int count;
-  unsigned ends;  // a bit for each child that is a bundle and is seen under a small angle
+  unsigned ends;  // a bit for each child bundle seen under a small angle
 
   __m256 sums() const { return _mm256_load_ps(&up_to[8]); }
   double before(int i) const { return double(up_to[static_cast<std::size_t>(7 + i)]); }
@@ -82,22 +83,22 @@ struct LightTree::Sums {
   double part(int i) const { return before(i + 1) - before(i); }
 };
 
-/// Where a descent is; enter() makes it from a bit.
+/// The kind of position that a descent is at; enter() computes it from a bit.
 enum class LightTree::State : std::uint8_t { at_node, at_entry, at_bundle };
 
-/// The state of one choice. A uniform number is used level by level: what is left of it within the
-/// chosen child's interval is the number of the next level, and is filled up with new bits before
-/// it gets coarse.
+/// The state of one selection. A uniform number is reused level by level: its remainder within the
+/// interval of the selected child is the number of the next level, and gets new bits before it
+/// becomes coarse.
 struct LightTree::Descent {
   const Receiver* at;
   Rng* rng;
   Choice* result;
   double u;             // in [0, 1)
-  double bits;          // `u` is a multiple of that over `probability`
-  double probability;   // of the way so far
-  double drawn;         // pick(): u times the sum of all weights
-  int child;            // pick(): the next one
-  std::uint32_t where;  // the number of a node or bundle, or a place in entries_
+  double bits;          // resolution of `u` times `probability`
+  double probability;   // of the descent so far
+  double target;        // select_child(): u times the sum of all weights
+  int child;            // select_child(): the selected child
+  std::uint32_t where;  // index of a node or bundle, or in entries_
   State state;
 
   Descent() = default;
@@ -108,12 +109,12 @@ struct LightTree::Descent {
         u(uniform),
         bits(0x1p-53),
         probability(1),
-        drawn(0),
+        target(0),
         child(0),
         where(0),
         state(State::at_node) {}
 
-  /// Fills `u` up where it is a multiple of more than `coarse`.
+  /// Adds bits to `u` if its resolution is coarser than `coarse`.
   void refine(double coarse) {
     if (bits > coarse * probability) [[unlikely]] {
       u += bits / probability * rng->next_choice();
@@ -134,7 +135,7 @@ struct LightTree::Descent {
   };
   const __m256 distance2 = _mm256_max_ps(_mm256_max_ps(dot3(dx, dy, dz), _mm256_mul_ps(r, r)),
                                          _mm256_set1_ps(least_distance2));
-  // To 12 bits: a weight may be any number, if it is the same one everywhere.
+  // To 12 bits: a weight may have any error that is equal in all evaluations.
   const __m256 inverse = _mm256_rsqrt_ps(distance2);
   const __m256 sign = _mm256_set1_ps(-0.0F);
   __m256 along = dot3(_mm256_set1_ps(at.n.x), _mm256_set1_ps(at.n.y), _mm256_set1_ps(at.n.z));
@@ -143,7 +144,7 @@ struct LightTree::Descent {
                      LightNode::signed_bytes(node.back[2]));
   if (node.both_sides != 0) [[unlikely]]
     back = _mm256_andnot_ps(_mm256_and_ps(lanes(node.both_sides), sign), back);
-  // To a point of the sphere, a cosine is at most that of the centre plus r / d.
+  // At a point of the sphere, a cosine is at most that at the centre plus r / d.
   along = _mm256_mul_ps(_mm256_add_ps(along, r), inverse);
   back = _mm256_mul_ps(_mm256_fmadd_ps(r, _mm256_set1_ps(127), back), inverse);
   return {inverse, along, back, _mm256_setzero_ps()};
@@ -154,7 +155,7 @@ struct LightTree::Descent {
   const __m256 one = _mm256_set1_ps(1);
   const __m256 received =
       _mm256_max_ps(_mm256_min_ps(g.along, one), _mm256_set1_ps(at.least_cosine));
-  // Cosines and sines are times 127. Within the cone of axes the angle to it is 0.
+  // Cosines and sines are times 127. Within the cone of axes the angle is 0.
   const __m256 cos_spread = LightNode::signed_bytes(node.cos_spread);
   const __m256 cosine = _mm256_min_ps(g.back, cos_spread);
   const __m256 sine2 = _mm256_max_ps(_mm256_fnmadd_ps(cosine, cosine, _mm256_set1_ps(127 * 127)),
@@ -186,7 +187,7 @@ struct LightTree::Descent {
     return _mm256_permutevar8x32_ps(sums, _mm256_set1_epi32(node.count - 1));
   };
   __m256 all = total();
-  if (!(_mm256_cvtss_f32(all) >= least_total)) [[unlikely]] {  // too far away for floats
+  if (!(_mm256_cvtss_f32(all) >= least_total)) [[unlikely]] {  // too distant for float precision
     sums = sums_up_to(node.intensities());
     all = total();
   }
@@ -203,26 +204,26 @@ struct LightTree::Descent {
 }
 
 /// Selects a child.
-[[gnu::always_inline]] inline void LightTree::pick(const Sums& s, Descent& d) {
-  d.drawn = d.u * s.total();  // below it, whatever the rounding: floats have 24 bits
-  const __m256 passed = _mm256_cmp_ps(s.sums(), _mm256_set1_ps(round_down(d.drawn)), _CMP_LE_OQ);
+[[gnu::always_inline]] inline void LightTree::select_child(const Sums& s, Descent& d) {
+  d.target = d.u * s.total();  // below the sum despite rounding: floats have 24 bits
+  const __m256 passed = _mm256_cmp_ps(s.sums(), _mm256_set1_ps(round_down(d.target)), _CMP_LE_OQ);
   d.child = std::popcount(static_cast<unsigned>(_mm256_movemask_ps(passed)));
 }
 
-/// Goes on to the child that is picked.
+/// Moves to the selected child.
 [[gnu::always_inline]] inline void LightTree::enter(const Sums& s, Descent& d) const {
   const LightNode& node = nodes_[d.where];
   const int i = d.child;
   const double part = s.part(i);
-  d.u = (d.drawn - s.before(i)) / part;
+  d.u = (d.target - s.before(i)) / part;
   d.probability *= part / s.total();
-  // Without a branch: where a way ends is not foreseeable.
+  // Without a branch: the end of a descent is unpredictable.
   const std::uint32_t place = d.where * width + static_cast<std::uint32_t>(i);
   const std::uint32_t is_node = 0U - (node.nodes >> i & 1U);
   const std::uint32_t next = (node.node(i) & is_node) | (d.where & ~is_node);
   d.where = (next & is_node) | (place & ~is_node);
   d.state = static_cast<State>(is_node + 1);
-  // The node that is read next, and its entries, of which one may be; at an entry both are there.
+  // Prefetch the next node, and its entries, one of which may be next; an entry has both already.
   const auto* lines = reinterpret_cast<const char*>(nodes_.data() + next);
   for (std::size_t k = 0; k < sizeof(LightNode); k += 64) _mm_prefetch(lines + k, _MM_HINT_T0);
   _mm_prefetch(entries_.data() + std::size_t{next} * width, _MM_HINT_T0);
@@ -233,11 +234,11 @@ struct LightTree::Descent {
   d.refine(0x1p-25);
 }
 
-/// Ends a descent at an entry, of a bundle by intensity.
+/// Ends a descent: at an entry, or in a bundle by intensity.
 void LightTree::end(Descent& d) const {
   if (d.state == State::at_bundle) {
     const Bundle& bundle = bundles_[bundle_of_[d.where]];
-    d.refine(0x1p-44);  // tables have bins, and parts of bins down to 2^-32
+    d.refine(0x1p-44);  // bits for the table's bins, and for parts of bins down to 2^-32
     const AliasTable::Draw drawn = bundle.by_intensity.sample(d.u);
     d.probability *= double(drawn.pmf.value);
     d.u = std::min(d.u, 1 - 0x1p-53);
@@ -254,7 +255,7 @@ LightTree::Choice LightTree::choose(const Receiver& at, double u, Rng& rng) cons
     const LightNode& node = nodes_[d.where];
     Sums s;
     sum_up(node, at, s);
-    pick(s, d);
+    select_child(s, d);
     enter(s, d);
   }
   end(d);
@@ -262,9 +263,8 @@ LightTree::Choice LightTree::choose(const Receiver& at, double u, Rng& rng) cons
 }
 
 void LightTree::choose(std::span<Request> requests) const {
-  // A level in five loops: each is short enough for the processor to work on several descents at
-  // once. A descent that ends gives its place to the next request, so that the loops keep their
-  // length.
+  // Each level takes five loops, each short enough for the processor to overlap several descents.
+  // When a descent ends, the next request takes its place, so the loops keep their length.
   constexpr std::size_t together = 16;
   std::array<Descent, together> descents;
   std::array<Geometry, together> geometries;
@@ -284,14 +284,14 @@ void LightTree::choose(std::span<Request> requests) const {
     for (std::size_t k = 0; k < n; ++k) {
       add_up(nodes_[descents[k].where], geometries[k], sums[k]);
     }
-    for (std::size_t k = 0; k < n; ++k) pick(sums[k], descents[k]);
+    for (std::size_t k = 0; k < n; ++k) select_child(sums[k], descents[k]);
     std::size_t m = 0;
     for (std::size_t k = 0; k < n; ++k) {
       enter(sums[k], descents[k]);
       ended[m] = k;
       m += descents[k].state == State::at_node ? 0 : 1;
     }
-    // From the last on: what fills a gap has not ended.
+    // In reverse order: the descent that fills a gap has not ended.
     while (m-- > 0) {
       Descent& d = descents[ended[m]];
       end(d);
@@ -302,7 +302,7 @@ void LightTree::choose(std::span<Request> requests) const {
 
 double LightTree::probability(std::uint32_t entry, const Receiver& at) const {
   if (entry >= places_.size() || places_[entry] == none) return 0;
-  // From the root on, as choose() multiplies.
+  // From the root, multiplying in the same order as choose().
   constexpr int most = 64;  // see LightTreeBuilder
   std::array<std::uint32_t, most> way;
   int n = 0;

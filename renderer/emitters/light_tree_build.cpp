@@ -1,5 +1,5 @@
-// Building a light tree: groups are split by the surface area orientation heuristic of Conty
-// Estevez and Kulla 2018, sec. 4.4, until a node has eight children.
+// Builds a light tree: groups are split by the surface area orientation heuristic of Conty Estevez
+// and Kulla 2018, sec. 4.4, until a node has eight children.
 
 #include <algorithm>
 #include <limits>
@@ -11,17 +11,17 @@ namespace lacuna {
 
 namespace {
 
-/// Levels of nodes that are split by cost; below them, groups are halved.
+/// Levels of nodes that are split by cost; at lower levels, groups are halved.
 constexpr int levels_by_cost = 24;
 constexpr int bins = 16;
-/// Groups of that many are split only along axes of at least half the longest side.
+/// Larger groups are split only along axes of at least half the longest side.
 constexpr std::size_t many = 4096;
-/// Groups of up to that many are split where their nodes get full.
+/// Groups up to this size are split so that nodes become full.
 constexpr std::size_t few = 512;
-/// A bundle's axes are within that angle, and its radius is at most that share of the scene's.
+/// The largest angle between a bundle's axes, and its largest radius relative to the scene's.
 constexpr double bundle_spread = std::numbers::pi / 3, bundle_size = 1.0 / 32;
 
-/// A box around points, in floats.
+/// A bounding box of points, in floats.
 struct FloatBox {
   V3f low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
 
@@ -36,10 +36,10 @@ struct FloatBox {
   V3f size() const { return high - low; }
 };
 
-/// What the cost of a group is computed from.
+/// The quantities that determine the cost of a group.
 struct Group {
   FloatBox box;
-  FloatBox axes;  ///< of the directions in which the emitters shine, as points
+  FloatBox axes;  ///< of the axes of emission, as points
   double intensity = 0;
   std::size_t count = 0;
 
@@ -49,8 +49,8 @@ struct Group {
     intensity += g.intensity;
     count += g.count;
   }
-  /// Intensity times squared size times a measure of the solid angle it shines into: from pi, that
-  /// of a plane, to 4 pi.
+  /// Intensity times squared size times a measure of the solid angle of emission: from pi, that of
+  /// a plane, to 4 pi.
   double cost() const {
     if (count == 0) return 0;
     const V3d size(box.size());
@@ -60,7 +60,7 @@ struct Group {
   }
 };
 
-/// An emitter, prepared.
+/// An emitter with the data for building.
 struct Item {
   Group group;
   V3f centre;
@@ -85,7 +85,7 @@ Item item_of(const TreeEmitter& e, std::uint32_t index) {
   return i;
 }
 
-/// Emitters of a child in the making.
+/// The emitters of a child under construction.
 struct Part {
   std::size_t begin = 0, end = 0;
   Group group;
@@ -117,7 +117,8 @@ class LightTreeBuilder {
     return g;
   }
 
-  /// Adds `n` nodes, of which the first gets this number; children of one node lie side by side.
+  /// Adds `n` contiguous nodes and returns the index of the first; the children of a node are
+  /// contiguous.
   std::uint32_t add_nodes(std::size_t n) {
     const std::size_t size = tree_.nodes_.size() + n;
     tree_.nodes_.resize(size);
@@ -127,8 +128,8 @@ class LightTreeBuilder {
     return static_cast<std::uint32_t>(size - n);
   }
 
-  /// Makes the node `index` of a group and all below it; gives its bounds. `bundled`: it is in a
-  /// bundle.
+  /// Builds the node `index` of a group and all nodes below it; returns its bounds. `bundled`: it
+  /// is inside a bundle.
   EmitterBounds build(const Part& all, std::uint32_t index, int depth, bool bundled) {
     const std::vector<Part> parts = children_of(all, depth);
     std::array<EmitterBounds, LightTree::width> children;
@@ -165,7 +166,7 @@ class LightTreeBuilder {
     return joined;
   }
 
-  /// Small beside the scene, and of surfaces that face one way.
+  /// Whether a part is small relative to the scene and consists of surfaces that face one way.
   bool is_bundle(const Part& part) const {
     if (!(largest_bundle_ > 0)) return false;
     EmitterBounds all = emitters_[items_[part.begin].emitter].bounds;
@@ -204,7 +205,7 @@ class LightTreeBuilder {
     if (all.count() <= few) {
       while (least * LightTree::width < all.count()) least *= LightTree::width;
     }
-    // How much is gained by splitting a part.
+    // The gain of splitting a part.
     const auto worth = [&](const Part& p) {
       if (p.count() <= least) return -1.0;
       return depth < levels_by_cost ? p.group.cost() : static_cast<double>(p.count());
@@ -221,7 +222,7 @@ class LightTreeBuilder {
     return parts;
   }
 
-  /// Splits at a multiple of `unit` emitters, in the order along an axis.
+  /// Splits at a multiple of `unit` emitters, sorted along an axis.
   std::pair<Part, Part> split_few(const Part& p, std::size_t unit) {
     double best = std::numeric_limits<double>::infinity();
     int best_axis = 0;
@@ -295,7 +296,7 @@ class LightTreeBuilder {
     return result;
   }
 
-  /// Keeps the cheapest split into the bins up to one and the others.
+  /// Tries each split between two bins and keeps the cheapest.
   static void try_splits(const std::array<Group, bins>& binned, double elongation, int axis,
                          double& best, int& best_axis, int& best_bin,
                          std::pair<Part, Part>& result) {
@@ -320,7 +321,7 @@ class LightTreeBuilder {
     }
   }
 
-  /// Halves the emitters along the longest axis; in any order where all are in one place.
+  /// Halves the emitters along the longest axis; in any order if all are at one point.
   std::pair<Part, Part> halve(const Part& p, const V3f& size) {
     const std::size_t middle = p.begin + p.count() / 2;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

@@ -32,7 +32,7 @@ double unit(const Rng::FinePoint& at) { return static_cast<double>(at.x >> 11) *
 }  // namespace
 
 PointwiseSelection::Choice PointwiseSelection::choose_infinite(Rng::FinePoint at, Rng& rng) const {
-  at.besides = infinite_.size() > 1 ? rng.next_u32() : 0;  // it has decided for infinity
+  at.besides = infinite_.size() > 1 ? rng.next_u32() : 0;  // it has been used to select infinity
   const std::uint32_t i = infinite_.sample(at);
   const std::uint32_t entry = infinite_entries_[i];
   return {entry, relative(entry, infinite_share_ * double(infinite_.pmf(i).value)), at};
@@ -53,7 +53,7 @@ PointwiseSelection::Choice PointwiseSelection::choose(const Receiver& receiver,
 void PointwiseSelection::choose(std::span<Request> requests) const {
   constexpr std::size_t together = 64;
   std::array<LightTree::Request, together> descents;
-  std::array<Request*, together> asked{};
+  std::array<Request*, together> tree_requests{};
   std::array<Rng::FinePoint, together> numbers;
   std::size_t n = 0;
   const auto descend = [&] {
@@ -62,7 +62,7 @@ void PointwiseSelection::choose(std::span<Request> requests) const {
       by_power_.prefetch(descents[k].result.entry);
     }
     for (std::size_t k = 0; k < n; ++k) {
-      asked[k]->result = choose_finite(descents[k].result, numbers[k]);
+      tree_requests[k]->result = choose_finite(descents[k].result, numbers[k]);
     }
     n = 0;
   };
@@ -76,7 +76,7 @@ void PointwiseSelection::choose(std::span<Request> requests) const {
     descents[n].u = unit(at);
     descents[n].rng = r.rng;
     numbers[n] = at;
-    asked[n++] = &r;
+    tree_requests[n++] = &r;
     if (n == together) descend();
   }
   descend();

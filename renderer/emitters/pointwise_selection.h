@@ -8,18 +8,18 @@
 
 namespace lacuna {
 
-/// Selects an emitter for a receiver: by a light tree among those in the scene, by power among
-/// those at infinity. Which of the two is decided by their powers, but neither gets less than an
-/// eighth: the power of light from infinity depends on the size of the scene, and indoors little of
-/// it arrives.
+/// Selects an emitter for a receiver: emitters in the scene by a light tree, emitters at infinity
+/// by power. The probability of infinity follows from their powers, but each kind gets at least
+/// 1/8: the power of light from infinity depends on the size of the scene, and little of it arrives
+/// indoors.
 class PointwiseSelection {
  public:
   struct Infinite {
     std::uint32_t entry;
     double power;  ///< > 0
   };
-  /// `power`: that of all emitters. `extent`: the scene's radius, as of LightTree. `by_power`: the
-  /// selection that ratios are relative to, which outlives this.
+  /// `power`: the sum over all emitters. `extent`: the scene's radius, as in LightTree. `by_power`:
+  /// the selection that ratios are relative to; must outlive this.
   PointwiseSelection(const std::vector<TreeEmitter>& finite, std::span<const Infinite> infinite,
                      double power, double extent, const AliasTable& by_power);
   PointwiseSelection(const PointwiseSelection&) = delete;
@@ -27,21 +27,21 @@ class PointwiseSelection {
 
   struct Choice {
     std::uint32_t entry = 0;
-    /// Its probability over that of selection by power.
+    /// Its probability over that of the selection by power.
     float ratio = 1;
-    Rng::FinePoint at{};  ///< what is left of the numbers: places a point on the emitter
+    Rng::FinePoint at{};  ///< remainder of the numbers: places a point on the emitter
   };
-  /// By the numbers `at`; `rng` fills them up.
+  /// Selects by the numbers `at`; `rng` supplies further bits.
   Choice choose(const Receiver& receiver, const Rng::FinePoint& at, Rng& rng) const;
-  /// A request to choose() for one of several points.
+  /// The arguments of choose() for one of several points, and its result.
   struct Request {
     Receiver receiver;
-    Rng* rng = nullptr;  ///< gives the numbers
+    Rng* rng = nullptr;  ///< supplies the numbers
     Choice result = {};
   };
-  /// choose() for each request, with the same results, in less time.
+  /// choose() for each request, with the same results, but faster.
   void choose(std::span<Request> requests) const;
-  /// The ratio that choose() states where it returns `entry`.
+  /// The ratio that choose() returns with `entry`.
   float ratio(std::uint32_t entry, const Receiver& at) const;
 
   /// Number of emitters in the scene.

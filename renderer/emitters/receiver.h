@@ -4,14 +4,14 @@
 
 namespace lacuna {
 
-/// A point that light arrives at, as a light tree sees it.
+/// A receiver of light, as a light tree needs it.
 struct Receiver {
   V3f x{0, 0, 0};
-  /// Unit: the point receives light from the side of `n`. 0: from all directions alike.
+  /// Unit: receives light from the side of `n`. 0: receives light from all directions equally.
   V3f n{0, 0, 0};
-  bool both_sides = false;  ///< it receives light from the side of -n too
-  /// Weight of light along the surface, against 1 for light along `n`; in (0, 1]. It is larger
-  /// where a shading normal decides on the cosine.
+  bool both_sides = false;  ///< also receives light from the side of -n
+  /// Weight of light at grazing angles, relative to 1 for light along `n`; in (0, 1]. Larger if a
+  /// shading normal determines the cosine.
   float least_cosine = 1;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using Channel = std::vector<double>;
 
-/// Luma of BT.601, as the authors of SSIM take it, of sRGB codes.
+/// BT.601 luma of sRGB codes, which the authors of SSIM use.
 Channel luma(std::span<const double> codes) {
   Channel y(codes.size() / 3);
   for (std::size_t i = 0; i < y.size(); ++i) {
@@ -23,7 +23,8 @@ Channel luma(std::span<const double> codes) {
   return y;
 }
 
-/// A Gaussian of deviation 1.5 pixels over 11 x 11 pixels, cut off at the picture's borders.
+/// A Gaussian of standard deviation 1.5 pixels over 11 x 11 pixels, truncated at the borders of the
+/// picture.
 class Blur {
  public:
   Blur(int width, int height) : width_(width), height_(height) {
@@ -38,7 +39,7 @@ class Blur {
   double& at(int k) { return weights_[static_cast<std::size_t>(k + reach)]; }
   double weight(int k) const { return weights_[static_cast<std::size_t>(k + reach)]; }
 
-  /// One dimension: `n` values `step` apart.
+  /// Filters one dimension: `n` values, `step` apart.
   Channel along(const Channel& in, int step, int n) const {
     Channel out(in.size());
     for (std::size_t i = 0; i < in.size(); ++i) {

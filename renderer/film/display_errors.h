@@ -12,8 +12,8 @@ struct DisplayErrors {
       0;  ///< structural similarity of luma, windows of 11 x 11 (Wang et al. 2004); 1: same
 };
 
-/// `estimate` and `reference`: interleaved linear RGB of `width` x `height` pixels, both above 0.
-/// `exposure`: as preview_png()'s. Throws std::invalid_argument for other sizes.
+/// `estimate` and `reference`: interleaved linear RGB of `width` x `height` pixels, both sides
+/// above 0. `exposure`: as in preview_png(). Throws std::invalid_argument for other sizes.
 DisplayErrors display_errors(std::span<const double> estimate, std::span<const double> reference,
                              int width, int height, double exposure);
 

@@ -7,12 +7,12 @@
 
 namespace lacuna {
 
-/// A sum as two doubles that do not overlap: `high` is the sum rounded, `low` what that left out.
+/// A sum as two doubles that do not overlap: `high` is the rounded sum, `low` the rounding error.
 struct PairSum {
   double high = 0, low = 0;
 };
 
-/// Adds `x` to `sum` and returns what neither of its doubles could hold: 0 if the new sum is exact
+/// Adds `x` to `sum` and returns the remainder that fits neither double; 0: the new sum is exact
 /// (Knuth 1969, theorem 4.2.2B, three times).
 inline double add_to(PairSum& sum, double x) {
   const double s = sum.high + x, s_part = s - sum.high;
@@ -25,16 +25,16 @@ inline double add_to(PairSum& sum, double x) {
   return lost;
 }
 
-/// Adds another sum. Not 0: the new sum is not exact.
+/// Adds another sum. Returns 0 if the new sum is exact.
 inline double add_to(PairSum& sum, const PairSum& other) {
   const double of_high = std::abs(add_to(sum, other.high));
   return of_high + std::abs(add_to(sum, other.low));
 }
 
-/// One PairSum for each value of a picture. While nothing is lost, the sums are exact, so they do
-/// not depend on the order of what was added. With n floats in a sum that is so if n times the
-/// largest is below 2^105 times the last bit of the smallest: for 2^24 iterations, where no value
-/// is 2^57 times another.
+/// A PairSum for each value of a picture. While no remainder is lost, the sums are exact and do not
+/// depend on the order of additions. A sum of n floats is exact if n times the largest is below
+/// 2^105 times the last bit of the smallest: for 2^24 iterations, if the values span a ratio below
+/// 2^57.
 class ExactSums {
  public:
   ExactSums() = default;
@@ -42,15 +42,15 @@ class ExactSums {
 
   std::size_t size() const { return high_.size(); }
   PairSum operator[](std::size_t i) const { return {high_[i], low_[i]}; }
-  /// The sums and what they left out, for loops over many of them.
+  /// The high and low parts, for loops over many sums.
   double* high() { return high_.data(); }
   double* low() { return low_.data(); }
 
-  /// Adds the sums of `other`, of the same size; false if one of them is no longer exact.
+  /// Adds the sums of `other`, of the same size. Returns false if a sum is no longer exact.
   bool add(const ExactSums& other);
 
-  /// For checkpoints. load() keeps the size. It throws std::runtime_error on another size and on
-  /// what save() never writes; `what` names the sums in the error.
+  /// For checkpoints. load() keeps the size; it throws std::runtime_error on another size and on
+  /// states that save() never writes. `what` names the sums in the error.
   void save(class ByteWriter& out) const;
   void load(class ByteReader& in, const std::string& what);
 

@@ -10,11 +10,12 @@ namespace lacuna {
 
 namespace {
 
-/// Channels of the pixels of one period of SquaredErrors: the loops over them become vectors.
+/// The channels of the pixels in one period of SquaredErrors, so that the compiler vectorises loops
+/// over them.
 constexpr std::size_t lanes = 3 * SquaredErrors::side;
 using Lanes = std::array<double, lanes>;
 
-/// Where the sums of one pixel's channel lie.
+/// Addresses of the sums of one channel of a pixel.
 struct SumPointers {
   double *sum, *sum_low, *squares, *squares_low;
 
@@ -23,13 +24,13 @@ struct SumPointers {
   }
 };
 
-/// One over the number of iterations of the half, before and with the one that is added.
+/// 1 over the number of iterations of the half, without and with the added one.
 struct Shares {
   double before, with;
 };
 
-/// Adds up to `lanes` neighbouring values. `deviations` gets the products of Welford (1962), whose
-/// sum over iterations is that of squared deviations.
+/// Adds up to `lanes` neighbouring values. `deviations` receives the products of Welford (1962),
+/// whose sum over iterations is that of the squared deviations.
 inline void add_values(const float* values, std::size_t count, const SumPointers& at,
                        const Shares& shares, Lanes& deviations, Lanes& lost) {
   for (std::size_t k = 0; k < count; ++k) {
@@ -69,8 +70,8 @@ struct BandSums {
   }
 };
 
-/// n times the sum of squares less the square of the sum, not below 0. Where all values are equal
-/// both products are exact, and the difference is 0.
+/// n times the sum of squares minus the square of the sum, at least 0. If all values are equal,
+/// both products are exact and the difference is 0.
 double scaled_deviations(double n, const PairSum& squares, const PairSum& sum) {
   PairSum d{n * squares.high, std::fma(n, squares.high, -(n * squares.high))};
   const double square = sum.high * sum.high;
@@ -97,7 +98,7 @@ void Film::add(std::uint64_t iteration, const Image& estimate, const ThreadPool*
   ++h.n;
   const Shares shares{before, 1.0 / static_cast<double>(h.n)};
   const std::size_t row = 3 * std::size_t(width_);
-  const float* values = &estimate.pixels.data()->x;  // colours are three floats each
+  const float* values = &estimate.pixels.data()->x;  // a colour is three floats
   const SumPointers first{h.sums.high(), h.sums.low(), squares_.high(), squares_.low()};
   std::vector<BandSums> bands(std::size_t((height_ + rows_of_band - 1) / rows_of_band));
   const auto add_band = [&](int b) {

@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// The position of a layer in a file of half floats.
+/// The position of a layer in a file of half-precision floats.
 struct HalfLayer {
   std::string name;
   std::vector<std::string> channels;
@@ -16,10 +16,10 @@ struct HalfLayer {
   double scale = 1;  ///< a power of two; value = half float * scale
 };
 
-/// Packs `layers`, whose values are finite, for a viewer that reads no EXR: little-endian IEEE
-/// halves, interleaved, top row first, one layer after the other. Each layer is scaled so that its
-/// largest magnitude lies in [2^14, 2^15): nothing overflows, and values up to 2^28 times smaller
-/// keep all 11 bits. `out` gets the bytes; the result says what lies where in them.
+/// Packs `layers`, whose values are finite, for a viewer that does not read EXR: little-endian IEEE
+/// half floats, interleaved, top row first, layer by layer. Each layer is scaled so that its
+/// largest magnitude lies in [2^14, 2^15): no value overflows, and values up to 2^28 times smaller
+/// keep all 11 bits. Appends to `out` and returns the positions of the layers in it.
 std::vector<HalfLayer> pack_half(const std::vector<ExrLayer>& layers, ByteWriter& out);
 
 }  // namespace lacuna

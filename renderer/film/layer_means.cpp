@@ -12,8 +12,8 @@ namespace lacuna {
 
 namespace {
 
-/// Of a pixel: its colour in the iteration, its sum, and its floats in image.exr, which is put
-/// together in memory.
+/// Bytes per pixel: its colour in the iteration, its sum, and its floats in image.exr, which is
+/// encoded in memory.
 constexpr std::uint64_t pixel_bytes = sizeof(Rgb) + 3 * sizeof(double) + 3 * sizeof(float);
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace lacuna {
 namespace {
 
-/// Adds a pair of values to the sum of every metric. Unrolled over the table, so that each term is
-/// inlined.
+/// Adds the terms of a pair of values to the sum of every metric. Unrolled over the metrics, so
+/// that each term is inlined.
 template <std::size_t... M>
 void add_terms(Errors& sums, double x, double r, std::index_sequence<M...>) {
   ((sums.values[M] += error_metrics[M].term(x, r)), ...);
@@ -19,8 +19,7 @@ void add_terms(Errors& sums, double x, double r, std::index_sequence<M...>) {
 
 double Errors::operator[](ErrorMetric metric) const {
   if (needs_reference(metric)) return values[static_cast<std::size_t>(metric)];
-  throw std::invalid_argument(std::string(enum_name(metric)) +
-                              " is not measured against a reference");
+  throw std::invalid_argument(std::string(enum_name(metric)) + " needs no reference");
 }
 
 Errors errors(std::span<const double> estimate, std::span<const double> reference) {

@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// The errors of an estimate against a reference: the values of all metrics that need a reference
-/// (renderer/settings/error_metrics.h), in the table's order.
+/// The errors of an estimate against a reference: one value for each metric that needs a reference,
+/// in the order of renderer/settings/error_metrics.h.
 struct Errors {
   std::array<double, reference_metrics> values{};
 
@@ -19,7 +19,7 @@ struct Errors {
 };
 
 /// Computes all errors in double, from unclamped values. `estimate` and `reference` have the same
-/// size. A value that is not finite makes the errors not finite.
+/// size. A non-finite value makes the errors non-finite.
 Errors errors(std::span<const double> estimate, std::span<const double> reference);
 
 /// Mean squared error of the mean of all `na` + `nb` samples, estimated from the means `a` and `b`

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t least_exceedances = 5;
 
-/// The mean of log(1 - theta x): the shape k, given theta = -k / sigma.
+/// The mean of log(1 - theta x): the shape k for theta = -k / sigma.
 double shape(std::span<const double> x, double theta) {
   double sum = 0;
   for (const double v : x) sum += std::log1p(-theta * v);
@@ -21,8 +21,8 @@ struct Fit {
   double shape, scale;
 };
 
-/// The generalized Pareto distribution of `x` > 0, ascending: theta averaged over a grid by profile
-/// likelihood (Zhang and Stephens 2009).
+/// Fits a generalized Pareto distribution to `x` > 0, ascending: theta is the mean over a grid,
+/// weighted by the profile likelihood (Zhang and Stephens 2009).
 Fit fit(std::span<const double> x) {
   constexpr double prior = 3;
   const auto n = double(x.size());
@@ -53,7 +53,7 @@ std::optional<ParetoTail> pareto_tail(std::span<const double> largest, std::uint
   const auto wanted = std::size_t(std::min(0.2 * n, 3 * std::sqrt(n)));
   const std::size_t tail = std::min(wanted, largest.size() - 1);
   const double threshold = largest[largest.size() - 1 - tail];
-  // In units of the largest: squares of radiances may be near either end of a double's range.
+  // Relative to the largest value: squares of radiances may approach either end of double's range.
   const double scale = largest.back() - threshold;
   if (!(scale > 0)) return {};
   std::vector<double> exceedances;
@@ -74,19 +74,19 @@ std::optional<ParetoTail> pareto_tail(std::span<const double> largest, std::uint
 
 double ParetoTail::mean_above(double count) const {
   const double beyond =
-      1 / (count * share);  // the part of the tail that is not expected to be seen
+      1 / (count * share);  // the part of the tail above the largest expected value
   if (!(beyond < 1) || !std::isfinite(index)) return 0;
-  const double seen = 1 - beyond;
+  const double reached = 1 - beyond;
   const double k = index;
-  double mean = 0;  // of (1 - p)^-k - 1 over k, up to `seen`
+  double mean = 0;  // of ((1 - p)^-k - 1) / k over p in [0, reached]
   if (std::abs(k) < 1e-6) {
-    mean = seen + beyond * std::log(beyond);
+    mean = reached + beyond * std::log(beyond);
   } else if (std::abs(k - 1) < 1e-6) {
-    mean = -std::log(beyond) - seen;
+    mean = -std::log(beyond) - reached;
   } else {
-    mean = ((1 - std::pow(beyond, 1 - k)) / (1 - k) - seen) / k;
+    mean = ((1 - std::pow(beyond, 1 - k)) / (1 - k) - reached) / k;
   }
-  return share * (seen * threshold + scale * mean);
+  return share * (reached * threshold + scale * mean);
 }
 
 }  // namespace lacuna

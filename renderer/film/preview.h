@@ -12,8 +12,8 @@ double preview_exposure(std::span<const double> rgb);
 /// The sRGB code of a linear value; 0 for values <= 0 and NaN.
 unsigned char display_code(double linear);
 
-/// The bytes of a PNG: `rgb` times `exposure`, clipped, sRGB. Values below zero or not finite show
-/// as black. `rgb` is interleaved, top row first. Throws std::runtime_error.
+/// The bytes of a PNG: `rgb` times `exposure`, clipped, sRGB. Negative and non-finite values become
+/// black. `rgb` is interleaved, top row first. Throws std::runtime_error.
 std::string preview_png(int width, int height, std::span<const double> rgb, double exposure);
 
 /// Writes preview_png() at preview_exposure(). Throws like write_exr().

@@ -13,7 +13,7 @@
 namespace lacuna {
 
 /// Reads `size` values; `what` names them in errors. Throws std::runtime_error on another number of
-/// values, and on values that are not finite.
+/// values, and on non-finite values.
 inline std::vector<double> get_finite(ByteReader& in, std::size_t size, const std::string& what) {
   std::vector<double> values = in.get_vector<double>();
   if (values.size() != size) throw std::runtime_error("saved " + what + " has another size");
@@ -30,8 +30,8 @@ inline void put_image(ByteWriter& out, const Image& image) {
   out.append(image.pixels.data(), sizeof(Rgb) * image.pixels.size());
 }
 
-/// Reads an image of the same size; `what` names it in errors. Throws std::runtime_error on another
-/// size, and on values that are not finite.
+/// Reads an image of the same size as `image`; `what` names it in errors. Throws std::runtime_error
+/// on another size, and on non-finite values.
 inline void get_image(ByteReader& in, Image& image, const std::string& what) {
   if (in.get_length(sizeof(float)) != 3 * image.pixels.size()) {
     throw std::runtime_error("saved " + what + " has another size");

@@ -31,7 +31,7 @@ void SquaredErrors::add(const Sums& sums, int width, int height) {
 
 void SquaredErrors::merge(const SquaredErrors& other) {
   for (const double value : other.heap_) add(value);
-  count_ += other.count_ - other.heap_.size();  // those too small to be kept
+  count_ += other.count_ - other.heap_.size();  // those too small for the heap
 }
 
 std::vector<double> SquaredErrors::largest() const {

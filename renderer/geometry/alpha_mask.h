@@ -7,14 +7,14 @@ namespace lacuna {
 /// alphaMode MASK of one mesh: which points of its triangles are opaque.
 class AlphaMask {
  public:
-  /// Whether the mask can reject a hit: the material has one, and its alpha is textured or below
+  /// Whether the mask can reject a hit: the material has a mask, and its alpha is textured or below
   /// the cutoff.
   static bool needed(const SceneData& scene, const Mesh& mesh) {
     const Material& m = scene.materials[mesh.material];
     return m.mask && (m.base_color_texture.used() || m.alpha < m.alpha_cutoff);
   }
 
-  /// Keeps pointers into `scene`; its texture must be decoded before opaque() is called.
+  /// Keeps pointers into `scene`; decode the texture before the first call of opaque().
   AlphaMask(const SceneData& scene, const Mesh& mesh)
       : mesh_(&mesh),
         material_(&scene.materials[mesh.material]),
@@ -25,7 +25,7 @@ class AlphaMask {
                 : nullptr),
         uvs_(&mesh.uvs[static_cast<std::size_t>(material_->base_color_texture.uv_set)]) {}
 
-  /// Barycentric (u, v) on triangle `triangle`, as in Hit.
+  /// Whether the point at barycentric (u, v), as in Hit, is opaque.
   bool opaque(std::uint32_t triangle, float u, float v) const {
     float alpha = material_->alpha;
     if (texture_ != nullptr) {

@@ -16,13 +16,13 @@ namespace lacuna {
 
 namespace {
 
-// Embree's own bound on coordinates (rtcore_ray checks) is 1.8e18.
+// Embree's limit for coordinates (rtcore_ray checks) is 1.8e18.
 constexpr float largest_coordinate = 1e18F;
-// Embree's own bounds are inclusive: the least float leaves out hits at 0.
+// Embree includes both ends of a ray: the smallest float as the start excludes hits at 0.
 constexpr float least_distance = std::numeric_limits<float>::min();
 
 bool acceptable(const Ray& ray) {
-  // The ray's o and d at once; an ordered comparison is false for NaN as well.
+  // Tests o and d at once; an ordered comparison is false for NaN, too.
   static_assert(sizeof(Ray) == 32);
   const Mask8 small = Float8(largest_coordinate) >= abs(Float8::load(&ray.o.x));
   return (movemask(small) & 0x3f) == 0x3f && ray.tmax >= 0.0F;
@@ -44,7 +44,7 @@ RTCRay to_embree(const Ray& ray) {
   r.flags = 0;
   return r;
 }
-/// The same as ray `i` of a packet that is zero.
+/// Sets ray `i` of a packet that is zero, as to_embree() does.
 void put(const Ray& ray, RTCRay8& packet, std::size_t i) {
   packet.org_x[i] = ray.o.x, packet.org_y[i] = ray.o.y, packet.org_z[i] = ray.o.z;
   packet.dir_x[i] = ray.d.x, packet.dir_y[i] = ray.d.y, packet.dir_z[i] = ray.d.z;
@@ -71,7 +71,7 @@ struct RayCaster::Impl {
   RTCScene scene = nullptr;
   std::vector<std::unique_ptr<AlphaMask>> masks;
   std::atomic<std::int64_t> bytes{0};
-  std::string said;  // by Embree of its latest error
+  std::string last_error;  // Embree's text
   mutable std::atomic<std::uint64_t> refused{0};
   std::vector<RecordedRay>* recorded = nullptr;
 
@@ -86,12 +86,14 @@ struct RayCaster::Impl {
   void check(const char* doing) const {
     const RTCError e = rtcGetDeviceError(device);
     if (e == RTC_ERROR_NONE) return;
-    // One of its tasks ran out of memory and cancelled the others, which report it first; or
-    // there was no memory for a thread's stack.
-    const bool unnamed = e == RTC_ERROR_UNKNOWN && (said == "task cancelled" ||
-                                                    said.starts_with("pthread_create has failed"));
+    // A task that ran out of memory cancels the others, which may report first; or a thread's stack
+    // could not be allocated.
+    const bool unnamed =
+        e == RTC_ERROR_UNKNOWN &&
+        (last_error == "task cancelled" || last_error.starts_with("pthread_create has failed"));
     if (e == RTC_ERROR_OUT_OF_MEMORY || unnamed) throw std::bad_alloc();
-    throw SceneError(fmt::format("Embree failed while {}: error {} ({})", doing, int(e), said));
+    throw SceneError(
+        fmt::format("Embree failed while {}: error {} ({})", doing, int(e), last_error));
   }
 
   void add(const SceneData& data, std::size_t index) {
@@ -130,7 +132,7 @@ RayCaster::RayCaster(const SceneData& data, const ThreadPool& pool)
   rtcSetDeviceErrorFunction(
       impl_->device,
       [](void* user, RTCError, const char* text) {
-        static_cast<Impl*>(user)->said = text == nullptr ? "" : text;
+        static_cast<Impl*>(user)->last_error = text == nullptr ? "" : text;
       },
       impl_.get());
   rtcSetDeviceMemoryMonitorFunction(
@@ -199,9 +201,9 @@ void RayCaster::intersect(std::span<const Ray> rays, std::span<Hit> hits,
     }
     rtcIntersect8(valid.data(), impl_->scene, &context, &q);
     for (std::size_t i = 0; i < std::min<std::size_t>(8, rays.size() - first); ++i) {
-      const bool met = q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-      result[first + i] = met ? 1 : 0;
-      if (met) {
+      const bool found = q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      result[first + i] = found ? 1 : 0;
+      if (found) {
         hits[first + i] = {q.ray.tfar[i], q.hit.geomID[i], q.hit.primID[i], q.hit.u[i], q.hit.v[i]};
       }
     }
@@ -238,7 +240,7 @@ void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> resu
       queries[i] = to_embree(good ? ray : Ray{V3f(0, 0, 0), V3f(0, 0, 1), 0});
       if (!good) {
         ++impl_->refused;
-        queries[i].tfar = -1;  // inactive, and reads as occluded
+        queries[i].tfar = -1;  // inactive; read below as occluded
       }
     }
     rtcOccluded1M(impl_->scene, &context, queries.data(), static_cast<unsigned>(n), sizeof(RTCRay));

@@ -35,15 +35,15 @@ struct RecordedRay {
   bool shadow;  ///< an occlusion query
 };
 
-/// The only class that calls Embree. Watertight ("robust") traversal on AVX2 kernels, with the same
-/// bits for any number of threads. Embree aborts the process on rays that are not finite; this
-/// class refuses and counts them.
+/// The only class that calls Embree. Watertight ("robust") traversal by AVX2 kernels, bit-identical
+/// for any number of threads. Embree aborts the process on rays that are not finite; this class
+/// rejects and counts them.
 class RayCaster {
  public:
   /// Copies the triangles of `scene` and keeps a pointer to its materials and textures for alpha
-  /// masks: points where alpha < cutoff are not hit. Only meshes whose material has a mask get a
-  /// filter. Builds with as many threads as `pool` has. Throws SceneError, std::bad_alloc if
-  /// Embree runs out of memory, and Stopped.
+  /// masks: points of alpha below the cutoff are not hit. Only meshes whose material has a mask get
+  /// a filter. Builds with the thread count of `pool`. Throws SceneError, std::bad_alloc if Embree
+  /// runs out of memory, and Stopped.
   RayCaster(const SceneData& scene, const ThreadPool& pool);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
@@ -51,20 +51,20 @@ class RayCaster {
 
   /// Finds the nearest hit in (0, tmax]; false if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;
-  /// intersect() for coherent rays, as those of one origin through neighbouring texels, in packets
-  /// of eight. All spans have one element for each ray; `result` 1: there is a hit.
+  /// intersect() for coherent rays, such as rays from one origin through neighbouring texels, in
+  /// packets of eight. All spans have one element per ray; `result` is 1 for a hit.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits,
                  std::span<std::uint8_t> result) const;
   /// Whether the ray hits anything in (0, tmax].
   bool occluded(const Ray& ray) const;
-  /// occluded() for many rays; `result` has one element for each, 1: occluded.
+  /// occluded() for many rays; `result` has one element per ray, 1 if occluded.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> result) const;
 
-  /// occluded() for rays of one origin to neighbouring points, in packets of eight.
+  /// occluded() for rays from one origin to neighbouring points, in packets of eight.
   void occluded_together(std::span<const Ray> rays, std::span<std::uint8_t> result) const;
 
-  /// Starts recording every traced ray to `rays`, in their order; null: stops. Requires that one
-  /// thread traces the rays.
+  /// Appends every traced ray to `rays` from now on, in order; null stops. Requires that a single
+  /// thread traces rays.
   void record(std::vector<RecordedRay>* rays) const;
 
   std::uint64_t refused_rays() const;  ///< not finite, or of a magnitude beyond Embree's range

@@ -3,9 +3,9 @@
 namespace lacuna {
 
 V2f TextureRef::transform(const V2f& uv) const {
-  // KHR_texture_transform: scale, then rotate, then shift. v points down, so counter-clockwise
-  // turns the first axis towards negative v; the extension's first example (lower left quadrant,
-  // turned clockwise) fixes the sign.
+  // KHR_texture_transform: scale, then rotate, then translate. v points down, so a
+  // counter-clockwise rotation turns the first axis towards negative v; the extension's first
+  // example (lower left quadrant, rotated clockwise) fixes the sign.
   V2f out(uv.x * scale.x, uv.y * scale.y);
   if (rotation != 0) {
     const float c = std::cos(rotation);

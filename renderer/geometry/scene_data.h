@@ -23,7 +23,7 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices below positions.size()
   std::uint32_t material = 0;
 
-  /// Both texture coordinates at barycentric (u, v) of a triangle; (0, 0) where the mesh has none.
+  /// Both texture coordinates at barycentric (u, v) of a triangle; (0, 0) if the mesh has none.
   std::array<V2f, 2> uvs_at(std::uint32_t triangle, float u, float v) const {
     std::array<V2f, 2> result{V2f(0, 0), V2f(0, 0)};
     const auto& t = triangles[triangle];
@@ -37,7 +37,7 @@ struct Mesh {
 
 /// A material's reference to a texture: image, coordinates and KHR_texture_transform.
 struct TextureRef {
-  int texture = -1;  ///< index into SceneData::textures; -1: none, the factor alone
+  int texture = -1;  ///< index into SceneData::textures; -1: no texture, only the factor
   int uv_set = 0;
   V2f offset{0, 0};
   V2f scale{1, 1};
@@ -54,7 +54,7 @@ struct Material {
   std::string name;
   Rgb base_color{1, 1, 1};
   float alpha = 1;
-  TextureRef base_color_texture;  ///< sRGB; its A is the alpha
+  TextureRef base_color_texture;  ///< sRGB; its A channel is the alpha
   float metallic = 1;
   float roughness = 1;                    ///< perceptual: GGX alpha is its square
   TextureRef metallic_roughness_texture;  ///< linear; G roughness, B metallic
@@ -67,7 +67,7 @@ struct Material {
   TextureRef specular_color_texture;  ///< sRGB
   float transmission = 0;
   TextureRef transmission_texture;  ///< R
-  bool mask = false;                ///< alphaMode MASK: a hit with alpha < cutoff is no hit
+  bool mask = false;                ///< alphaMode MASK: rays pass where alpha < cutoff
   float alpha_cutoff = 0.5F;
   bool double_sided = false;  ///< emits from both sides; all surfaces scatter on both
 
@@ -89,7 +89,7 @@ struct CameraData {
   std::string name;
   M44d to_world;  ///< Imath convention: row vectors, p_world = p * to_world; orthonormal 3x3 part
   double yfov = 0.8;      ///< vertical field of view, radians, in (0, pi)
-  std::string node = {};  ///< name of the node that it stands at
+  std::string node = {};  ///< name of the camera's node
 };
 
 struct SurfaceContact;
@@ -102,15 +102,15 @@ struct PunctualLight {
   std::string name;
   Rgb intensity{1, 1, 1};  ///< colour x intensity
   V3f position{0, 0, 0};
-  V3f direction{0, 0, -1};  ///< unit, in which the light travels
+  V3f direction{0, 0, -1};  ///< unit, the direction of the light's travel
   float inner_cone = 0;     ///< radians, half angle; 0 <= inner <= outer, 0 < outer <= pi/2
   float outer_cone = 0.785398F;
-  /// Point and spot, in a Scene: the surfaces that it lies in; null: none.
+  /// Point and spot lights of a Scene: the surfaces that contain the light; null if there are none.
   std::shared_ptr<const SurfaceContact> contact;
 };
 
 /// The contents of a glTF file that Lacuna uses, validated: indices in range, coordinates and
-/// factors finite and within the ranges of glTF, no degenerate triangles. Textures are not decoded.
+/// factors finite and within glTF's ranges, no degenerate triangles. Textures are not decoded yet.
 struct SceneData {
   std::vector<Mesh> meshes;
   std::vector<Material> materials;  ///< the last one is glTF's default material
@@ -118,13 +118,14 @@ struct SceneData {
   std::vector<CameraData> cameras;
   std::vector<PunctualLight> lights;
 
-  /// Scene coordinates are the file's minus this. 0 unless the scene lies far from the file's
-  /// origin (gltf_origin.h); all that is computed, warned of and stored is in scene coordinates.
+  /// Scene coordinates are the file's coordinates minus `origin`. 0 unless the scene lies far from
+  /// the file's origin (gltf_origin.h). All computations, warnings and stored data use scene
+  /// coordinates.
   V3d origin{0, 0, 0};
   std::uint64_t content_hash = 0;       ///< of all bytes read: the file, its buffers and its images
   std::uint64_t geometry_hash = 0;      ///< of positions in scene coordinates and indices only
   std::uint64_t dropped_triangles = 0;  ///< zero area or non-finite vertices
-  std::vector<std::string> warnings;    ///< parts of the file that were left out
+  std::vector<std::string> warnings;    ///< ignored parts of the file
 
   std::size_t triangle_count() const;
   /// The bounding box of all triangles, scene units.

@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// The data of a triangle that every hit reads, in one cache line.
+/// The data of a triangle that every hit reads: one cache line.
 struct alignas(64) TriangleRecord : TriangleShape {
   bool smooth = false;    ///< has interpolated normals
   bool textured = false;  ///< has texture coordinates that its material uses
@@ -23,20 +23,20 @@ struct alignas(64) TriangleRecord : TriangleShape {
 };
 static_assert(sizeof(TriangleRecord) == 64);
 
-/// The data that a hit on a textured or smooth triangle reads too, in one more cache line.
+/// The further data that a hit on a textured or smooth triangle reads: one more cache line.
 struct alignas(64) TriangleAttributes {
   std::array<V2f, 3> uv0;  ///< TEXCOORD_0 of the corners
   std::array<V3f, 3> normals;
 };
 
-/// The records of all triangles of a scene, and the attributes of those that have any.
+/// The records of all triangles of a scene, and the attributes of smooth or textured ones.
 class TriangleTable {
  public:
   explicit TriangleTable(const SceneData& scene);
   const TriangleRecord& at(std::uint32_t mesh, std::uint32_t triangle) const {
     return records_[first_[mesh].record + triangle];
   }
-  /// Requires a triangle that is smooth or textured.
+  /// Requires a smooth or textured triangle.
   const TriangleAttributes& attributes(std::uint32_t mesh, std::uint32_t triangle) const {
     return attributes_[first_[mesh].attributes + triangle];
   }
@@ -64,7 +64,7 @@ class TriangleTable {
   HugeVector<TriangleAttributes> attributes_;
 };
 
-/// Geometry of a hit. `ng` is unit and points to the front of the triangle.
+/// The geometry of a hit. `ng` is unit and points to the front of the triangle.
 struct Surface {
   V3f x{0, 0, 0};
   V3f ng{0, 0, 0};
@@ -77,11 +77,11 @@ struct Surface {
   bool emits = false, emits_behind = false;
 
   Surface() = default;
-  // Inline, because every hit constructs one in place.
+  // Inline: every hit constructs a Surface in place.
   /// The hit of `ray`.
   Surface(const SceneData& scene, const TriangleTable& table, const Ray& ray, const Hit& hit)
       : Surface(scene, table, hit, table.at(hit.mesh, hit.triangle).at(ray, hit.u, hit.v)) {}
-  /// The hit at the point `at`, which was computed before.
+  /// The hit at point `at`, computed before.
   Surface(const SceneData& scene, const TriangleTable& table, const Hit& hit, const V3f& at)
       : x(at), mesh(hit.mesh), triangle(hit.triangle) {
     const TriangleRecord& r = table.at(hit.mesh, hit.triangle);
@@ -101,7 +101,7 @@ struct Surface {
     if (r.smooth) {
       const V3f n = w * a.normals[0] + hit.u * a.normals[1] + hit.v * a.normals[2];
       const float length2 = n.length2();
-      // Opposite normals can cancel and leave no direction.
+      // Opposite normals can cancel: then keep ng.
       if (length2 > 0.0F) ns = n / std::sqrt(length2);
     }
   }

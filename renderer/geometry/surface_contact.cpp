@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Adds the plane of a triangle, unless `x` lies beside it or the plane is there.
+/// Adds the plane of a triangle, unless `x` lies off it or a parallel plane has been added.
 void add(SurfaceContact& contact, const TriangleShape& shape, const V3f& x, std::uint32_t mesh) {
   if (contact.count == static_cast<int>(contact.planes.size())) return;
   const float least = ray_offset(x, shape.ng, shape.plane_error);
@@ -27,9 +27,9 @@ void add(SurfaceContact& contact, const TriangleShape& shape, const V3f& x, std:
 }  // namespace
 
 std::optional<SurfaceContact> find_contact(const SurfaceSet& surfaces, const V3f& x) {
-  // Segments through the point along the axes, both ways. One of the axes is within 55 degrees of
-  // any normal. They are long enough for Embree to tell both ends from any plane through the
-  // middle.
+  // Traces segments through the point along the axes, in both directions. One axis is within 55
+  // degrees of any normal. The segments are long enough for Embree to distinguish both ends from a
+  // plane through the middle.
   constexpr float few_roundings = 0x1p-19F;
   const Bounds& box = surfaces.box;
   float size = max_abs_component(x);
@@ -42,7 +42,7 @@ std::optional<SurfaceContact> find_contact(const SurfaceSet& surfaces, const V3f
   for (int k = 0; k < 6; ++k) {
     V3f along(0, 0, 0);
     along[k / 2] = k % 2 == 0 ? reach : -reach;
-    // Each hit is a part of the segment further on than the one before.
+    // Continues behind each hit by this part of the segment.
     constexpr float part = 0x1p-6F;
     Hit hit;
     for (float from = 0; from < 2; from += hit.t + part) {

@@ -9,17 +9,17 @@
 
 namespace lacuna {
 
-/// The surfaces that a point in space lies in, up to the rounding of coordinates: a light in a
-/// ceiling, or a camera on a wall. Rays from the point start beside each of them, on the side that
-/// they go to, and rays to it end there: neither side hides the point, and the surfaces themselves,
-/// which see it at a cosine of 0, get nothing from it.
+/// The surfaces that contain a point, up to the rounding of coordinates: a light in a ceiling, or a
+/// camera on a wall. Rays from the point start beside each of them, on the side of the ray's
+/// direction, and rays to it end there, so that neither side occludes the point. The surfaces
+/// themselves receive nothing from it: their cosine is 0.
 struct SurfaceContact {
   struct Plane {
     V3f ng{0, 0, 0};   ///< unit
-    float offset = 0;  ///< by which rays start beside it, scene units
+    float offset = 0;  ///< distance at which rays start beside the plane, scene units
     std::uint32_t mesh = 0;
   };
-  std::array<Plane, 3> planes;  ///< of more surfaces, the first three that are not parallel
+  std::array<Plane, 3> planes;  ///< at most three, no two of them parallel
   int count = 0;
 
   /// The origin of a ray along `w` from the point `x`.
@@ -33,13 +33,13 @@ struct SurfaceContact {
   }
 };
 
-/// The surfaces of a scene.
+/// A scene's surfaces, as find_contact() needs them.
 struct SurfaceSet {
   const SceneData& scene;
   const RayCaster& rays;  ///< of `scene`
   const Bounds& box;      ///< of all triangles
 };
-/// The surfaces that the point `x` lies in, as rays meet them; none: it is free.
+/// The surfaces that contain `x`, found by rays; none if `x` lies in no surface.
 std::optional<SurfaceContact> find_contact(const SurfaceSet& surfaces, const V3f& x);
 
 }  // namespace lacuna

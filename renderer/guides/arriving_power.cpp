@@ -4,41 +4,41 @@ namespace lacuna {
 
 namespace {
 
-/// Rays of one part; the parts are summed in order.
+/// Rays per task; the results of tasks are summed in order.
 constexpr int rays_of_part = 4096;
 
 struct Arrival {
   std::uint32_t part;
   double power;
 };
-/// What leaves along a ray.
-struct Sent {
+/// A ray and the power along it.
+struct EmittedRay {
   Ray ray;
   double power;
 };
 
-/// `send(rng)`: a Sent or nothing.
-template <class Send>
+/// `emit(rng)` returns a ray with its power, or none.
+template <class Emit>
 std::vector<double> arriving(const Scene& scene, const SurfaceLookup& lookup, std::size_t count,
-                             int rays, const ThreadPool& pool, const Send& send) {
+                             int rays, const ThreadPool& pool, const Emit& emit) {
   const int parts = (rays + rays_of_part - 1) / rays_of_part;
-  std::vector<std::vector<Arrival>> found(static_cast<std::size_t>(parts));
+  std::vector<std::vector<Arrival>> arrivals(static_cast<std::size_t>(parts));
   pool.for_each(parts, [&](int part) {
     const int first = part * rays_of_part, end = std::min(rays, first + rays_of_part);
     for (int i = first; i < end; ++i) {
       Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::arriving_power);
-      const std::optional<Sent> sent = send(rng);
+      const std::optional<EmittedRay> emitted = emit(rng);
       Hit hit;
-      if (!sent || !scene.rays().intersect(sent->ray, hit)) continue;
-      const Surface s = scene.surface(sent->ray, hit);
-      const std::uint32_t node = lookup.node(V3d(s.x), V3d(s.ng), -V3d(sent->ray.d));
-      if (node != no_node && std::isfinite(sent->power)) {
-        found[static_cast<std::size_t>(part)].push_back({node, sent->power});
+      if (!emitted || !scene.rays().intersect(emitted->ray, hit)) continue;
+      const Surface s = scene.surface(emitted->ray, hit);
+      const std::uint32_t node = lookup.node(V3d(s.x), V3d(s.ng), -V3d(emitted->ray.d));
+      if (node != no_node && std::isfinite(emitted->power)) {
+        arrivals[static_cast<std::size_t>(part)].push_back({node, emitted->power});
       }
     }
   });
   std::vector<double> power(count, 0.0);
-  for (const auto& of_part : found) {
+  for (const auto& of_part : arrivals) {
     for (const Arrival& a : of_part) power[a.part] += a.power / rays;
   }
   return power;
@@ -50,22 +50,22 @@ std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& look
                                    std::size_t count, int rays, const ThreadPool& pool) {
   const EmitterSet& lights = scene.emitters();
   if (lights.empty()) return std::vector<double>(count, 0.0);
-  return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<Sent> {
+  return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<EmittedRay> {
     const EmitterPoint e = lights.sample(lights.choose(rng));
     const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
     if (!leaving) return std::nullopt;
-    return Sent{leaving->ray, double(luminance(leaving->throughput))};
+    return EmittedRay{leaving->ray, double(luminance(leaving->throughput))};
   });
 }
 
 std::vector<double> arriving_importance(const Scene& scene, const Camera& camera,
                                         const SurfaceLookup& lookup, std::size_t count, int rays,
                                         const ThreadPool& pool) {
-  return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<Sent> {
+  return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<EmittedRay> {
     const V2f at = rng.next2();
-    return Sent{camera.ray(at.x * static_cast<float>(camera.width()),
-                           at.y * static_cast<float>(camera.height())),
-                1.0};
+    return EmittedRay{camera.ray(at.x * static_cast<float>(camera.width()),
+                                 at.y * static_cast<float>(camera.height())),
+                      1.0};
   });
 }
 

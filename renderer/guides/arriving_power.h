@@ -11,13 +11,13 @@ namespace lacuna {
 
 /// The luminance of the emitted power that arrives unscattered at the surfaces of each of `count`
 /// parts of the empty space, estimated by `rays` rays from the emitters (Noel 2015, eq. 172-176).
-/// `lookup` maps a surface to the number of its part, as a node map does. The result is the same
-/// for any number of threads.
+/// `lookup` maps a surface to the index of its part, as a node map does. The result does not depend
+/// on the number of threads.
 std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& lookup,
                                    std::size_t count, int rays, const ThreadPool& pool);
 
-/// The share of the picture in which each part's surfaces are seen, without mirrors: the power that
-/// arrives of an eye that emits importance. As arriving_power() otherwise.
+/// The fraction of the picture in which each part's surfaces are directly visible, without mirrors:
+/// the power that arrives from an eye that emits importance. Otherwise as arriving_power().
 std::vector<double> arriving_importance(const Scene& scene, const Camera& camera,
                                         const SurfaceLookup& lookup, std::size_t count, int rays,
                                         const ThreadPool& pool);

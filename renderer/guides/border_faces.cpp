@@ -29,7 +29,7 @@ void BorderFaceLight::prepare(const PrepareContext& context, const SurfaceLookup
 }
 
 VoxelFace BorderFaceLight::draw(std::uint32_t region, const V3d& from, Rng& rng) const {
-  const std::uint32_t own = drawn_by(region);
+  const std::uint32_t own = sampled_region(region);
   const VoxelFace face = borders_.face(own, tables_[own].sample(rng));
   if (!has_thresholds()) return face;
   const std::uint32_t next = beyond(face);
@@ -39,7 +39,7 @@ VoxelFace BorderFaceLight::draw(std::uint32_t region, const V3d& from, Rng& rng)
 
 void BorderFaceLight::add_parts(std::uint32_t region, const V3d& from, double weight,
                                 FaceParts& parts) const {
-  const std::uint32_t own = drawn_by(region);
+  const std::uint32_t own = sampled_region(region);
   parts.add(boxes_[own], own, weight);
   const std::vector<LitPortalFace>& lit = lit_portal_faces_[own];
   const auto regions = static_cast<std::uint32_t>(tables_.size());
@@ -47,7 +47,7 @@ void BorderFaceLight::add_parts(std::uint32_t region, const V3d& from, double we
     const std::uint32_t next = lit[i].beyond;
     double replaced = 0;  // Q_n
     for (; i < lit.size() && lit[i].beyond == next; ++i) {
-      if (!suits(lit[i].centre, lit[i].axis, from)) replaced += lit[i].probability;
+      if (!is_suitable(lit[i].centre, lit[i].axis, from)) replaced += lit[i].probability;
     }
     if (replaced > 0 && !tables_[next].empty())
       parts.add(boxes_[next], regions + next, weight * replaced);
@@ -65,11 +65,11 @@ double BorderFaceLight::probability(std::uint32_t part, const CrossedFace& face,
   return probability(region, own);
 }
 
-/// "Too close, or located at a grazing angle" is why the thesis replaces a face (10.4.2). Its
-/// conditions, a distance "larger than d_t" and a cosine "greater than o_t", say the opposite: with
-/// its d_t, about one voxel and a half of its grid, they would keep only the faces beside the
-/// point, edge-on. So they are read as its reason says.
-bool BorderFaceLight::suits(const V3d& centre, int axis, const V3d& from) const {
+/// The thesis replaces a face because it is "too close, or located at a grazing angle" (10.4.2),
+/// but states the opposite conditions: a distance "larger than d_t" and a cosine "greater than
+/// o_t". With its d_t, about 1.5 voxels of its grid, these would keep only faces close to the
+/// point, seen edge-on. This implements the stated reason.
+bool BorderFaceLight::is_suitable(const V3d& centre, int axis, const V3d& from) const {
   const V3d apart = centre - from;
   const double distance = apart.length();
   return distance >= least_distance_ && std::abs(apart[axis]) >= settings_.least_cosine * distance;

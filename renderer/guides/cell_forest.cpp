@@ -43,7 +43,7 @@ void CellForest::divide(std::span<const Spread> spreads, double most, std::size_
       }
     }
     const double mean = spread.sum[axis] / spread.count;
-    // Less is rounding: all vertices lie in one place.
+    // A smaller variance is a rounding error: all vertices have the same position.
     if (!(widest > 1e-12 * (1 + mean * mean))) continue;
     const auto low = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back({0, 0, cell, 0});
@@ -59,7 +59,7 @@ void CellForest::load(ByteReader& in, std::size_t regions) {
   const std::size_t cells = regions + (good ? (nodes.size() - regions) / 2 : 0);
   for (std::size_t i = 0; i < nodes.size() && good; ++i) {
     const Node& n = nodes[i];
-    // Children come after their parents, so there are no cycles.
+    // Children follow their parents, so there are no cycles.
     good = n.low == 0 ? n.cell < cells
                       : n.low > i && n.low + std::size_t{1} < nodes.size() && n.axis < 6;
   }

@@ -10,14 +10,15 @@
 
 namespace lacuna {
 
-/// Divides the surfaces of each region of the empty space into cells: one binary tree for each
-/// region over the places of vertices and the normals there. A cell is divided across the dimension
-/// in which its vertices vary most, at their mean.
+/// Subdivides the surfaces of each region of the empty space into cells: for each region a binary
+/// tree over the positions and normals of path vertices. A cell is split in the dimension of
+/// largest variance of its vertices, at their mean.
 class CellForest {
  public:
-  /// A place over the scale of the region, and a unit normal.
+  /// A position relative to the scale of the region, and a unit normal.
   using Key = std::array<float, 6>;
-  /// The vertices of a cell: their number, the sums of their keys and of the keys' squares.
+  /// Statistics of the vertices of a cell: their number, the sums of their keys and of the squares
+  /// of these.
   struct Spread {
     double count = 0;
     std::array<double, 6> sum{}, square{};
@@ -27,7 +28,7 @@ class CellForest {
   };
 
   CellForest() = default;
-  /// One cell for each region, of the region's number.
+  /// One cell per region, with the region's index.
   explicit CellForest(std::size_t regions);
 
   std::size_t cells() const { return cells_; }
@@ -40,19 +41,19 @@ class CellForest {
     return nodes_[node].cell;
   }
 
-  /// Divides every cell with more than `most` vertices once; at most `limit` cells in all.
-  /// `spreads`: of each cell. `divided(cell)` is called for each division, after which the new cell
-  /// is cells() - 1.
+  /// Splits every cell with more than `most` vertices once, up to `limit` cells in total.
+  /// `spreads`: of each cell. Calls `divided(cell)` after each split; the new cell has the index
+  /// cells() - 1.
   void divide(std::span<const Spread> spreads, double most, std::size_t limit,
               const std::function<void(std::uint32_t)>& divided);
 
   void save(ByteWriter& out) const { out.put(nodes_); }
-  /// Throws std::runtime_error unless the data is a forest of as many regions.
+  /// Throws std::runtime_error unless the data is a forest for that number of regions.
   void load(ByteReader& in, std::size_t regions);
 
  private:
   struct Node {
-    std::uint32_t low = 0;  ///< the first of two children side by side; 0: a cell
+    std::uint32_t low = 0;  ///< the first of two adjacent children; 0: a leaf
     std::uint32_t axis = 0;
     std::uint32_t cell = 0;
     float at = 0;

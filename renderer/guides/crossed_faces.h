@@ -37,11 +37,11 @@ struct VoxelBox {
 /// A group of faces and its probability.
 struct FacePart {
   const VoxelBox* box;  ///< bounds of the voxels on both sides of the faces
-  std::uint32_t index;  ///< the region or portal, as Faces::add_parts() numbers it
+  std::uint32_t index;  ///< of the region or portal, see Faces::add_parts()
   double weight;
 };
 
-/// Groups of faces, each index once.
+/// Groups of faces, each index at most once.
 class FaceParts {
  public:
   void clear() { parts_.clear(); }
@@ -61,19 +61,19 @@ class FaceParts {
   std::vector<FacePart> parts_;
 };
 
-/// A face between two voxels, crossed by a ray; the voxels may lie outside the grid.
+/// A face between two voxels that a ray crosses; the voxels may lie outside the grid.
 struct CrossedFace {
   Imath::V3i from, to;
   int axis;
   double t;  ///< ray parameter of the crossing
 
-  /// The side of `from`, as VoxelFace counts.
+  /// The side of `from`, numbered as in VoxelFace.
   std::uint8_t side_of_from() const {
     return static_cast<std::uint8_t>(2 * axis + (to[axis] > from[axis] ? 1 : 0));
   }
 };
 
-/// A ray from `x` along `w` (of any length above 0) in grid coordinates, with 1 / w precomputed.
+/// A ray from `x` along `w` (nonzero, of any length) in grid coordinates, with precomputed 1 / w.
 struct GridRay {
   GridRay(const Imath::V3d& from, const Imath::V3d& along)
       : x(from), w(along), inverse(1 / along.x, 1 / along.y, 1 / along.z) {}
@@ -83,8 +83,8 @@ struct GridRay {
 
 /// Traverses the voxels of `box` along the ray (Amanatides and Woo 1987) and calls
 /// visit(CrossedFace) at each face between two of them that the ray crosses at x + t w, t > 0, in
-/// ascending t, until visit returns false. The `from` of a face is the `to` of the previous one.
-/// Where the ray runs through an edge, the face across the lower axis comes first.
+/// ascending t, until visit returns false. The `from` of a face is the `to` of the previous one. If
+/// the ray passes through an edge, the face across the lower axis comes first.
 template <class Visit>
 void for_each_crossed_face(const GridRay& ray, const VoxelBox& box, Visit&& visit) {
   const auto& [x, w, inverse] = ray;

@@ -16,8 +16,8 @@ V2f corner_of(std::size_t quarter) {
   return {quarter % 2 == 1 ? 0.5F : 0.0F, quarter / 2 == 1 ? 0.5F : 0.0F};
 }
 
-/// Chooses between two halves of these weights by uniform `u`, which gets what is left: 1 for the
-/// second.
+/// Selects one of two halves with these weights by uniform `u`, which becomes its remainder,
+/// uniform again. Returns 1 for the second.
 std::size_t upper_half(double& u, double first, double second) {
   const double share = first / (first + second);
   const bool upper = u >= share;
@@ -61,8 +61,7 @@ void DirectionTree::add(const V3f& w, double energy, bool filter) {
     const auto half = static_cast<float>(leaf_size(p) / 2);
     const Rectangle area{p - V2f(half), p + V2f(half)};
     const double density = energy / (4 * double(half) * double(half));
-    // The azimuth wraps around at its ends; energy beyond the poles is
-    // lost.
+    // The azimuth wraps around; energy beyond the poles is lost.
     for (const float shift : {-1.0F, 0.0F, 1.0F}) {
       spread(0, V2f(0, shift), 1, area, density);
     }
@@ -79,7 +78,7 @@ void DirectionTree::add(const V3f& w, double energy, bool filter) {
   }
 }
 
-/// Adds `density` over the part of `area` that the square at `low` covers.
+/// Adds `density` over the intersection of `area` with the square at `low`.
 void DirectionTree::spread(std::uint32_t node, const V2f& low, float size, const Rectangle& area,
                            double density) {
   for (std::size_t q = 0; q < 4; ++q) {
@@ -142,8 +141,9 @@ Pdf<SolidAngle> DirectionTree::pdf(const V3f& w) const {
 
 DirectionTree DirectionTree::refined(double share, int depth) const {
   struct Task {
-    std::uint32_t to, from;  // from 0, but for the root: a leaf's quarters are alike
-    std::size_t quarter;     // of the leaf that is being divided
+    std::uint32_t to, from;  // indices in both trees; from: 0, except for the root, in a leaf,
+                             // whose quadrants have equal energy
+    std::size_t quarter;     // of the leaf that is being split; 4: `from` is a node
     double energy;           // of the node
     int level;
   };
@@ -154,7 +154,7 @@ DirectionTree DirectionTree::refined(double share, int depth) const {
     const Task t = tasks.back();
     tasks.pop_back();
     for (std::size_t q = 0; q < 4; ++q) {
-      const bool own = t.quarter == 4;  // the node is there already
+      const bool own = t.quarter == 4;  // the node exists in this tree
       const double part = own ? double(nodes_[t.from].energy[q]) : t.energy / 4;
       if (t.level >= depth || !(part > share * all)) continue;
       const auto child = static_cast<std::uint32_t>(result.nodes_.size());
@@ -173,7 +173,7 @@ void DirectionTree::load(ByteReader& in) {
   for (std::size_t i = 0; i < nodes_.size() && good; ++i) {
     for (std::size_t q = 0; q < 4; ++q) {
       const std::uint32_t child = nodes_[i].child[q];
-      // Children come after their parents, so there are no cycles.
+      // Children follow their parents, so there are no cycles.
       good = good && (child == 0 || (child > i && child < nodes_.size()));
       good = good && nodes_[i].energy[q] >= 0 && std::isfinite(nodes_[i].energy[q]);
     }

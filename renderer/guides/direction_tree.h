@@ -18,31 +18,31 @@ namespace lacuna {
 V2f to_square(const V3f& w);
 V3f from_square(const V2f& p);
 
-/// A quadtree over the square of directions that stores the energy from each quarter (Mueller et
+/// A quadtree over the square of directions that stores the energy from each quadrant (Mueller et
 /// al. 2017, section 3).
 class DirectionTree {
  public:
-  /// A tree of one node, whose four leaves are the quarters of the square.
+  /// A tree of one node, whose four leaves are the quadrants of the square.
   DirectionTree() : nodes_(1) {}
 
-  /// Adds `energy` >= 0 from unit direction `w`. With `filter`, it is spread over a square around
-  /// `w` of the size of its leaf, so that noise is smoothed where the tree is coarse (Mueller 2019,
-  /// box filter).
+  /// Adds `energy` >= 0 from unit direction `w`. With `filter`, distributes it over a square around
+  /// `w` of the size of its leaf, which smooths noise where the tree is coarse (Mueller 2019, box
+  /// filter).
   void add(const V3f& w, double energy, bool filter);
   /// Sums the energies of the leaves up to the root; call after the last add().
   void build();
   double energy() const { return sum(nodes_[0]); }
-  /// Nothing can be sampled.
+  /// Whether nothing can be sampled.
   bool empty() const { return !(energy() > 0); }
 
-  /// Requires a tree that is not empty(). Maps the unit square to itself, piecewise linear: a
-  /// quarter's column is chosen by the first coordinate, its row by the second.
+  /// Samples by a piecewise linear map of the unit square to itself: the first coordinate selects a
+  /// quadrant's column, the second its row. Requires !empty().
   V3f sample(const Rng::FinePoint& u) const;
   V3f sample(Rng& rng) const { return sample(rng.next_fine_point()); }
   Pdf<SolidAngle> pdf(const V3f& w) const;
 
-  /// The tree of the next round, without energy: nodes with more than `share` of all energy are
-  /// divided, the others are leaves; at most `depth` levels.
+  /// The tree of the next round, without energy: nodes with more than the fraction `share` of all
+  /// energy are split, the others become leaves; at most `depth` levels.
   DirectionTree refined(double share, int depth) const;
 
   std::size_t nodes() const { return nodes_.size(); }
@@ -58,7 +58,7 @@ class DirectionTree {
   static double sum(const Node& n) {
     return double(n.energy[0]) + double(n.energy[1]) + double(n.energy[2]) + double(n.energy[3]);
   }
-  /// Returns the quarter that contains `p` and makes `p` relative to it.
+  /// Returns the quadrant that contains `p` and makes `p` relative to it.
   static std::size_t quarter(V2f& p);
   double leaf_size(V2f p) const;
   struct Rectangle {

@@ -10,16 +10,17 @@
 namespace lacuna {
 
 /// Directions through voxel faces: samples a face from the distribution of the point's region, then
-/// a point uniformly on the face. A direction can be sampled through every face on its way,
-/// occluded or not, so its density is the sum over all of them:
+/// a uniform point on the face. Each face on a ray, occluded or not, could have been sampled, so
+/// the density of a direction is the sum over all of them:
 ///     p(w) = sum_faces P(face) t^2 / |cos|
 /// with t the distance in voxels; a face has area 1 (Noel 2015, 10.4, whose pictures came out too
-/// bright). `Faces` holds the distributions: PortalFaces or BorderFaceLight. Faces::leaving_only
-/// says whether faces are sampled and counted only where the ray leaves the region through them.
+/// bright). `Faces` provides the distributions: PortalFaces or BorderFaceLight. With
+/// Faces::leaving_only, faces are sampled and counted only if the ray leaves the region through
+/// them.
 template <class Faces>
 class FaceDirections final : public GuidingDistribution {
  public:
-  /// `settings`: of the guide; Faces is constructed from them too.
+  /// `settings`: of the guide; also constructs Faces.
   template <class Settings>
   explicit FaceDirections(const Settings& settings) : settings_(settings), faces_(settings) {}
 
@@ -27,7 +28,8 @@ class FaceDirections final : public GuidingDistribution {
   void prepare(const PrepareContext& context) override {
     transform_ = context.space.voxels().transform;
     label_ = &context.space.regions().label;
-    // SurfaceLookup works on region labels as on node labels: both mark unlabelled voxels alike.
+    // SurfaceLookup accepts region labels as well as node labels: both mark unlabelled voxels by
+    // the same value.
     static_assert(no_region == no_node);
     lookup_.emplace(transform_, *label_);
     lattice_ = RegionLattice(*label_, settings_.mixing);
@@ -66,7 +68,7 @@ class FaceDirections final : public GuidingDistribution {
     const V2f u = rng.next2();
     const V3d d = face.point(label_->voxel(face.voxel), double(u.x), double(u.y)) - from;
     const double ahead = d.dot(face.normal());
-    if (ahead == 0) return std::nullopt;  // a face is not seen from its own plane
+    if (ahead == 0) return std::nullopt;  // a face in the point's own plane is not visible
     if (Faces::leaving_only && ahead < 0) return std::nullopt;
     return V3f(d.normalized());
   }
@@ -76,7 +78,7 @@ class FaceDirections final : public GuidingDistribution {
     const RegionMixture regions = mixture(from, at.cell.part);
     const double all = mass_of(regions);
     if (!(all > 0)) return {};
-    thread_local FaceParts parts;  // keeps its memory
+    thread_local FaceParts parts;  // keeps its memory between calls
     parts.clear();
     for (const auto& share : regions) {
       const double mass = faces_.mass(share.region);
@@ -99,7 +101,7 @@ class FaceDirections final : public GuidingDistribution {
   }
 
   std::size_t cells() const override { return regions_; }
-  /// Where the guide samples alone there is no probability to learn.
+  /// If only the guide is sampled, no probability is learned.
   AutoNumber probability() const override {
     return settings_.guide_only ? AutoNumber{1} : settings_.probability;
   }
@@ -131,7 +133,7 @@ class FaceDirections final : public GuidingDistribution {
       return false;
     });
   }
-  /// The share of the light that the distributions of these regions cover.
+  /// The fraction of the light that the distributions of these regions cover.
   double mass_of(const RegionMixture& regions) const {
     double sum = 0;
     for (const auto& share : regions) sum += share.weight * faces_.mass(share.region);

@@ -31,7 +31,7 @@ ImportancePaths::ImportancePaths(const SkeletonGraph& graph, std::span<const dou
                                  ImportanceAim aim)
     : graph_(graph), importance_(importance), aim_(aim), paths_(graph.nodes()) {
   const std::size_t n = graph.nodes();
-  last_seen_.resize(n);
+  last_visible_.resize(n);
   steps_.resize(n);
   tightest_.resize(n);
   sum_.resize(n);
@@ -51,7 +51,7 @@ void ImportancePaths::find_paths(std::uint32_t node) {
   });
 }
 
-/// Marks importance nodes, and nodes on the shortest path to one.
+/// Marks importance nodes, and the nodes on shortest paths to them.
 void ImportancePaths::mark_wanted() {
   for (const std::uint32_t v : settled_) wanted_[v] = importance_[v] > 0 ? 1 : 0;
   for (std::size_t i = settled_.size(); i-- > 1;) {
@@ -59,14 +59,14 @@ void ImportancePaths::mark_wanted() {
   }
 }
 
-/// Extends the visible path from `node` to `v`.
+/// Appends `v` to the visible path from `node`.
 void ImportancePaths::follow(std::uint32_t node, std::uint32_t v) {
   const Imath::V3d here(graph_.corners[v]);
   weight_[v] = 0;
   if (v == node) {
     sum_[v] = here;
     steps_[v] = 1;
-    size_[v] = HUGE_VAL;  // it is all around
+    size_[v] = HUGE_VAL;  // the node lies inside its own ball
     tightest_[v] = v;
     return;
   }
@@ -99,15 +99,15 @@ std::vector<ImportancePoint> ImportancePaths::points(
   for (const std::uint32_t v : settled_) {
     if (wanted_[v] == 0) continue;
     const std::uint32_t before = paths_.last[v];
-    const bool seen = v == node || (last_seen_[before] == before && sees(v));
-    last_seen_[v] = seen ? v : last_seen_[before];
-    if (seen) follow(node, v);
+    const bool visible = v == node || (last_visible_[before] == before && sees(v));
+    last_visible_[v] = visible ? v : last_visible_[before];
+    if (visible) follow(node, v);
     const double d = std::max(paths_.distance[v], least);
-    if (importance_[v] > 0) weight_[last_seen_[v]] += importance_[v] / (d * d);
+    if (importance_[v] > 0) weight_[last_visible_[v]] += importance_[v] / (d * d);
   }
   std::vector<ImportancePoint> points;
   for (const std::uint32_t v : settled_) {
-    if (wanted_[v] == 0 || last_seen_[v] != v || !(weight_[v] > 0)) continue;
+    if (wanted_[v] == 0 || last_visible_[v] != v || !(weight_[v] > 0)) continue;
     points.push_back({aim_at(v), weight_[v]});
   }
   return merged(std::move(points));

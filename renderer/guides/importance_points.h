@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// A point that rays from around a node are aimed at, on the way to the light.
+/// A point on the way to the light at which rays from the surroundings of a node are aimed.
 struct ImportancePoint {
   Imath::V3d at{0.0};  ///< voxels
   double weight = 0;
@@ -19,17 +19,17 @@ struct ImportancePoint {
 /// Finds the importance points of skeleton nodes (Noel 2015, 9.2.1, 9.3), one node at a time.
 class ImportancePaths {
  public:
-  /// `importance`: f of each node (eq. 164), in any unit; 0: not an importance node. Held by
-  /// reference.
+  /// `importance`: f of each node (eq. 164), in any unit; 0: not an importance node. Referenced,
+  /// not copied.
   ImportancePaths(const SkeletonGraph& graph, std::span<const double> importance,
                   ImportanceAim aim);
 
   /// For every importance node reachable from `node`: a point on the visible part of the shortest
-  /// path to it (eq. 162, or as `aim` says), with weight f / d^2 (eq. 164). Importance nodes whose
-  /// paths have the same visible part share one point, with the sum of their weights: the mixture
-  /// is the same, with fewer lobes. `sees(j)`: whether `node` sees node j; called only where `node`
-  /// sees the whole path before j. d is at least the node's radius and half a voxel: within its
-  /// ball all nodes are equally near, and the thesis' formula has no value at d = 0.
+  /// path to it (eq. 162, or by `aim`), with weight f / d^2 (eq. 164). Importance nodes whose paths
+  /// have the same visible part share a point with the sum of their weights: the same mixture with
+  /// fewer lobes. `sees(j)`: whether node j is visible from `node`; called only if the whole path
+  /// before j is visible. d is at least the node's radius and half a voxel: all nodes within its
+  /// ball are equally near, and the thesis' formula is undefined at d = 0.
   std::vector<ImportancePoint> points(std::uint32_t node,
                                       const std::function<bool(std::uint32_t)>& sees);
 
@@ -42,10 +42,11 @@ class ImportancePaths {
   const SkeletonGraph& graph_;
   std::span<const double> importance_;
   ImportanceAim aim_;
-  ShortestPaths paths_;  // from the current node; an edge is the node that it comes from
-  std::vector<std::uint32_t> settled_;  // in the order of their distance
-  std::vector<std::uint32_t> last_seen_;
-  // Of the path to a visible node: its number of nodes and the sum of their positions; the node
+  ShortestPaths
+      paths_;  // from the current node; the edge to a node is the index of its predecessor
+  std::vector<std::uint32_t> settled_;  // in order of distance
+  std::vector<std::uint32_t> last_visible_;
+  // For the path to a visible node: its number of nodes, and the sum of their positions; the node
   // whose ball subtends the smallest angle, and its radius over its distance.
   std::vector<std::uint32_t> steps_, tightest_;
   std::vector<Imath::V3d> sum_;

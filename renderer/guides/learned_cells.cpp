@@ -7,7 +7,8 @@ namespace lacuna {
 
 namespace {
 
-constexpr double leaf_share = 0.01;  // of a quadtree's energy in a leaf: rho of the paper
+constexpr double leaf_share =
+    0.01;  // largest fraction of a quadtree's energy in a leaf: the paper's rho
 constexpr int deepest_directions = 20;
 
 void learn(DirectionTree& tree, std::span<const TrainingSample> samples) {
@@ -20,7 +21,7 @@ void learn(AimedLobes& lobes, std::span<const TrainingSample> samples) { lobes.l
 
 void next_round(DirectionTree& sampling, DirectionTree& building) {
   building.build();
-  // Without samples in this round, the old tree stays.
+  // Without samples in this round, keep the previous tree.
   if (!building.empty()) sampling = std::move(building);
   building = sampling.refined(leaf_share, deepest_directions);
 }

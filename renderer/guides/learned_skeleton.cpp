@@ -23,7 +23,7 @@ void LearnedSkeleton::prepare(const PrepareContext& context) {
   cells_ = LearnedCells<AimedLobes>(first_lobes(context));
 }
 
-/// Of each region; empty where no way leads from it to the light.
+/// The initial lobes of each region; empty if no path leads from it to the light.
 std::vector<AimedLobes> LearnedSkeleton::first_lobes(const PrepareContext& context) const {
   const SkeletonGraph& graph = context.space.skeleton();
   const Grid3<std::uint32_t>& node_map = context.space.node_map();

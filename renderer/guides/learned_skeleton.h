@@ -8,11 +8,11 @@
 
 namespace lacuna {
 
-/// guide: learned_skeleton. Directions are learned in cells of the empty space: its regions, which
-/// walls and narrow passages bound, divided further by place and normal where paths are many
-/// (CellForest). A cell samples lobes fitted to the light that was found up to the last round
-/// (AimedLobes). Before anything is learned these are aimed at the importance points of the
-/// skeleton node in the middle of the region (Noel 2015, ch. 9).
+/// guide: learned_skeleton. Directions are learned in cells of the empty space: its regions,
+/// bounded by walls and narrow passages, split further by position and normal where vertices are
+/// many (CellForest). A cell samples lobes fitted to the light gathered up to the last round
+/// (AimedLobes). Initially they are aimed at the importance points of the skeleton node in the
+/// middle of the region (Noel 2015, ch. 9).
 class LearnedSkeleton final : public GuidingDistribution {
  public:
   explicit LearnedSkeleton(const LearnedSkeletonGuideSettings& settings) : settings_(settings) {}
@@ -47,8 +47,8 @@ class LearnedSkeleton final : public GuidingDistribution {
   LearnedSkeletonGuideSettings settings_;
   GridTransform transform_;
   const Grid3<std::uint32_t>* label_ = nullptr;
-  std::optional<SurfaceLookup> lookup_;  // of label_
-  std::vector<double> scale_;  // of each region: 1 / the radius of its largest ball in scene units
+  std::optional<SurfaceLookup> lookup_;  // by label_
+  std::vector<double> scale_;  // of each region: 1 / the radius of its largest ball, scene units
   CellForest forest_;
   std::vector<std::uint32_t> region_;        // of each cell
   std::vector<CellForest::Spread> spreads_;  // of each cell, in this round

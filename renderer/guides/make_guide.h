@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// The distribution of the guide with these settings, of eye paths or of light paths; null for
-/// guide: bsdf.
+/// The distribution of the guide with these settings, for eye paths or light paths; null for guide:
+/// bsdf.
 std::unique_ptr<GuidingDistribution> make_guiding_distribution(const GuideSettings& settings);
 std::unique_ptr<GuidingDistribution> make_guiding_distribution(const LightGuideSettings& settings);
 

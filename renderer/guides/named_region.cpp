@@ -18,11 +18,12 @@ NamedRegion named_region(const std::array<double, 3>& through, const PrepareCont
   const auto voxel = voxel_at(point, label.size());
   if (!voxel) refuse("it lies outside the scene's grid");
   if (voxels.scene.get(*voxel)) {
-    refuse(fmt::format("a surface meets its voxel, whose side is {:.6g}",
+    refuse(fmt::format("a surface intersects its voxel, whose side is {:.6g}",
                        voxels.transform.voxel_size));
   }
   const std::uint32_t region = label(*voxel);
-  if (region == no_region) refuse("neither the camera nor a light is in its part of the space");
+  if (region == no_region)
+    refuse("neither the camera nor a light is in its connected part of the empty space");
   return {point, region};
 }
 

@@ -11,8 +11,8 @@ PortalExits find_portal_exits(const PortalGraph& graph, std::uint32_t region,
                               const std::function<bool(std::uint32_t)>& sees) {
   const std::span<const V3d> centres = graph.centres, middles = graph.middles;
   ShortestPaths paths(centres.size());                 // their edges are portals
-  std::vector<std::uint32_t> exit(centres.size(), 0);  // the portal to aim at on the way there
-  std::vector<char> seen(centres.size(), 0);           // all portals on the way are
+  std::vector<std::uint32_t> exit(centres.size(), 0);  // the portal to aim at
+  std::vector<char> visible(centres.size(), 0);        // all portals on the way are visible
   std::map<std::uint32_t, double> by_portal;
   double elsewhere = 0;
   const auto other_side = [&](std::uint32_t portal, std::uint32_t of) {
@@ -23,8 +23,8 @@ PortalExits find_portal_exits(const PortalGraph& graph, std::uint32_t region,
     if (at != region) {
       const std::uint32_t last = paths.last[at], before = other_side(last, at);
       const bool first = before == region;
-      seen[at] = (first || seen[before] != 0) && sees(last) ? 1 : 0;
-      exit[at] = first || seen[at] != 0 ? last : exit[before];
+      visible[at] = (first || visible[before] != 0) && sees(last) ? 1 : 0;
+      exit[at] = first || visible[at] != 0 ? last : exit[before];
       if (power[at] > 0) {
         const double length = std::max(d, least_distance);
         const double weight = power[at] / (length * length);

@@ -30,7 +30,7 @@ V3d middle(const PortalGrid& grid, const Portal& portal) {
   return sum / static_cast<double>(portal.faces());
 }
 
-/// The bounds of the voxels on both sides of its faces.
+/// The bounds of the voxels on both sides of the portal's faces.
 VoxelBox box_around(const PortalGrid& grid, const Portal& portal) {
   VoxelBox box;
   for (std::uint64_t i = 0; i < portal.faces(); ++i) {
@@ -48,7 +48,7 @@ double squared_distance(const PortalGrid& grid, const Portal& portal, const V3d&
   for (std::uint64_t i = 0; i < portal.faces(); ++i) {
     const int axis = grid.portals.face(portal, i).axis();
     V3d apart = x - grid.face_centre(portal, i);
-    for (int a = 0; a < 3; ++a) {  // a face is flat along its axis, half a voxel wide each way else
+    for (int a = 0; a < 3; ++a) {  // half a voxel to each side, but flat along its axis
       apart[a] = std::max(0.0, std::abs(apart[a]) - (a == axis ? 0.0 : 0.5));
     }
     least = std::min(least, apart.length2());
@@ -56,12 +56,13 @@ double squared_distance(const PortalGrid& grid, const Portal& portal, const V3d&
   return least;
 }
 
-/// The portal nearest to a point of the empty space; among equals the first. Throws SceneError.
+/// The portal nearest to a point of the empty space, the first if several are equally near. Throws
+/// SceneError.
 std::uint32_t nearest_portal(const PortalGrid& grid, const NamedRegion& place) {
   const std::vector<Portal>& all = grid.portals.portals;
   if (all.empty()) {
     throw SceneError(
-        "guide: \"through\" names no portal: at this resolution the empty space has none");
+        "guide: \"through\" selects no portal: the empty space has none at this resolution");
   }
   std::uint32_t nearest = 0;
   double least = HUGE_VAL;
@@ -72,10 +73,10 @@ std::uint32_t nearest_portal(const PortalGrid& grid, const NamedRegion& place) {
   return nearest;
 }
 
-/// Whether half of a portal or more is seen from `eye`, in voxels, by some of its faces.
-bool mostly_seen(const RayCaster& rays, const V3d& eye, const PortalGrid& grid,
-                 const Portal& portal) {
-  // Asked for each pair of region and portal: the first faces that decide it are enough.
+/// Whether at least half of a portal is visible from `eye`, voxels, tested at some of its faces.
+bool mostly_visible(const RayCaster& rays, const V3d& eye, const PortalGrid& grid,
+                    const Portal& portal) {
+  // Called for each pair of region and portal: stops as soon as the result is decided.
   constexpr std::uint64_t most_tried = 16;
   const std::uint64_t tried = std::min(portal.faces(), most_tried);
   const V3f from(grid.transform.to_world(eye));
@@ -136,7 +137,7 @@ void PortalFaces::find_all_exits(const PrepareContext& context, const SurfaceLoo
     const V3d eye = V3d(labels.label.voxel(labels.regions[r].root)) + V3d(0.5);
     const auto sees = [&](std::uint32_t p) {
       return settings_.portal == PortalChoice::last &&
-             mostly_seen(context.scene.rays(), eye, grid, portals_->portals[p]);
+             mostly_visible(context.scene.rays(), eye, grid, portals_->portals[p]);
     };
     const double own_size = std::max(1.0, double(labels.regions[r].opening));
     const PortalExits found =

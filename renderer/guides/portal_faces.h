@@ -8,12 +8,12 @@
 
 namespace lacuna {
 
-/// The faces of guide: portals. Shortest paths lead from every region to the regions where light
-/// arrives. One portal on each path is sampled with weight f / d^2, where f is the power that
-/// arrives in the region at its end and d its length, as in skeleton guiding (Noel 2015, eq. 164);
-/// the faces of a portal have equal probability (10.4.1, for one light). Power that arrives in the
-/// region itself lowers the region's mass(). Where the settings name a portal (`through`), it is
-/// the only one of every region, whose mass() is 1 (SIS3 and SIS4).
+/// The faces of guide: portals. Shortest paths lead from every region to the regions at which light
+/// arrives. One portal on each path is sampled with weight f / d^2, with f the power that arrives
+/// in the region at its end and d its length, as in skeleton guiding (Noel 2015, eq. 164); the
+/// faces of a portal have equal probability (10.4.1, for one light). Power that arrives in the
+/// region itself lowers the region's mass(). If the settings name a portal (`through`), all regions
+/// use only that portal, with mass() 1 (SIS3 and SIS4).
 class PortalFaces {
  public:
   static constexpr bool learns = false;
@@ -26,14 +26,14 @@ class PortalFaces {
   static void load(ByteReader&) {}
   std::vector<std::pair<std::string, double>> statistics() const;
 
-  /// Share of a region's light that comes from other regions, in [0, 1]; 0: nothing is sampled.
+  /// Fraction of a region's light that comes from other regions, in [0, 1]; 0: nothing is sampled.
   double mass(std::uint32_t region) const { return exits_[region].mass; }
   void add_parts(std::uint32_t region, const V3d&, double weight, FaceParts& parts) const {
     for (const Exit& e : exits_[region].exits)
       parts.add(boxes_[e.portal], e.portal, weight * e.each);
   }
   VoxelFace draw(std::uint32_t region, const V3d& from, Rng& rng) const;
-  /// 1 for a face of `portal`, that is, between its two regions `near` and `far`; else 0.
+  /// 1 for a face of `portal`, that is, between its regions `near` and `far`; else 0.
   double probability(std::uint32_t portal, const CrossedFace&, std::uint32_t near,
                      std::uint32_t far, const V3d&) const {
     const Portal& p = portals_->portals[portal];
@@ -43,7 +43,7 @@ class PortalFaces {
  private:
   struct Exit {
     std::uint32_t portal;
-    double share;  // probability of the portal; all of a region add up to 1
+    double share;  // probability of the portal; the sum over a region's exits is 1
     double each;   // probability of one of its faces
   };
   struct Exits {

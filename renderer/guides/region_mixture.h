@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// The weights of regions at a point, which add up to 1.
+/// Weights of regions at a point, normalised.
 class RegionMixture {
  public:
   struct Share {
@@ -37,22 +37,22 @@ class RegionMixture {
 };
 
 /// Interpolates between the distributions of neighbouring regions. Regions have sharp borders, at
-/// which the variance would jump (Noel 2015, 10.4: discontinuities that the thesis leaves
-/// unsolved). Within `width` of a border the distributions of both sides are mixed with weights
-/// that change continuously: a trilinear interpolation of the labels at the corners of a lattice of
-/// cells of that width, without corners outside all regions.
+/// which the variance would jump (Noel 2015, 10.4, describes these discontinuities as unsolved).
+/// Within `width` of a border the distributions of both sides are mixed with continuous weights: a
+/// trilinear interpolation of the labels at the corners of a lattice of cells of that width,
+/// without corners outside all regions.
 class RegionLattice {
  public:
   RegionLattice() = default;
-  /// `label` is held by reference; `width`: voxels, 0: no mixing.
+  /// `label` is referenced, not copied; `width`: voxels, 0: no mixing.
   RegionLattice(const Grid3<std::uint32_t>& label, int width) : label_(&label), width_(width) {
     if (width == 0) return;
-    // Cells that reach out of the grid too: every corner in it belongs to eight.
+    // Includes cells that extend beyond the grid: every corner in the grid belongs to eight cells.
     only_ = Grid3<std::uint32_t>((label.size() - Imath::V3i(1)) / width + Imath::V3i(2));
     for (std::size_t i = 0; i < only_.count(); ++i) only_[i] = only_region(only_.voxel(i));
   }
 
-  /// The mixture at `x`, in voxels; `own` is the region of the voxel in front of the surface.
+  /// The mixture at `x`, voxels; `own`: the region of the voxel in front of the surface.
   RegionMixture mixture(const Imath::V3d& x, std::uint32_t own) const {
     Imath::V3i cell;
     Imath::V3d part;
@@ -78,7 +78,7 @@ class RegionLattice {
     const Imath::V3i v = (cell - Imath::V3i(1) + corner(k)) * width_;
     return in_grid(v, label_->size()) ? (*label_)(v) : no_region;
   }
-  /// The one region at a cell's corners, `several`, or no_region.
+  /// The region if it is the same at all corners of a cell; `several`, or no_region.
   std::uint32_t only_region(const Imath::V3i& cell) const {
     std::uint32_t only = no_region;
     for (int k = 0; k < 8; ++k) {

@@ -13,10 +13,10 @@
 
 namespace lacuna {
 
-/// Stands for the BSDF alone.
+/// The registry's entry for the BSDF only.
 struct NoDistribution {};
 
-/// All guides: the BSDF alone, or a distribution of directions that Guide mixes with it. A new one
+/// All guides: the BSDF only, or a distribution of directions that Guide mixes with it. A new guide
 /// is a row here and an alternative of GuideSettings.
 using GuideRegistry = Registry<
     Entry<BsdfGuideSettings, NoDistribution>, Entry<SkeletonGuideSettings, SkeletonDirections>,

@@ -69,7 +69,7 @@ void SdTree::load(ByteReader& in) {
   for (std::size_t i = 0; i < nodes.size() && good; ++i) {
     const auto& child = nodes[i].child;
     const bool leaf = child[0] == 0 && child[1] == 0;
-    // Children come after their parents, so there are no cycles.
+    // Children follow their parents, so there are no cycles.
     good = leaf ? nodes[i].leaf < leaves_.size()
                 : std::min(child[0], child[1]) > i && std::max(child[0], child[1]) < nodes.size();
   }

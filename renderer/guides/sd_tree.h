@@ -7,11 +7,11 @@
 namespace lacuna {
 
 /// guide: sd_tree. Practical path guiding (Mueller, Gross and Novak 2017): a binary tree over the
-/// scene's box; each leaf has a quadtree of directions with the light that paths found. It learns
-/// in rounds of 1, 2, 4, ... iterations: after each round, leaves with many vertices are divided,
-/// and the next round samples the directions of the last one. Of the improvements of Mueller 2019
-/// it has the box filter over directions. All iterations have equal weight in the picture, the
-/// first ones too: the film is the mean of independent estimates.
+/// scene's box; each leaf has a quadtree of directions with the light that paths gathered. It is
+/// trained in rounds of 1, 2, 4, ... iterations: after each round, leaves with many vertices are
+/// split, and the next round samples the directions of the previous one. Of the improvements of
+/// Mueller 2019 it has the box filter over directions. All iterations, including the first, have
+/// equal weight in the picture: the film is the mean of independent estimates.
 class SdTree final : public GuidingDistribution {
  public:
   explicit SdTree(const SdTreeGuideSettings& settings) : settings_(settings) {}
@@ -50,7 +50,7 @@ class SdTree final : public GuidingDistribution {
 
   SdTreeGuideSettings settings_;
   V3d low_{0.0};
-  double side_ = 1;  // of the cube around the scene
+  double side_ = 1;  // of the cube around the scene, scene units
   std::vector<Node> nodes_;
   Leaves leaves_;
 };

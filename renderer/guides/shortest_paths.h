@@ -11,15 +11,15 @@ namespace lacuna {
 
 /// The shortest paths from one node of a graph to all others.
 struct ShortestPaths {
-  std::vector<double> distance;  ///< of each node; infinite where no path leads
+  std::vector<double> distance;  ///< of each node; infinite if no path leads to it
   std::vector<std::uint32_t>
-      last;  ///< the last edge of its path, as find() was told; the source: 0
+      last;  ///< the last edge of its path, as passed to reach(); the source: 0
 
   explicit ShortestPaths(std::size_t nodes) : distance(nodes), last(nodes) {}
 
-  /// Dijkstra's algorithm from `source`. settle(node, distance, reach) is called for every node
-  /// that a path leads to, by distance, of equal ones the lower index first; it calls reach(next,
-  /// distance of next by way of node, edge) for every neighbour. Lengths are 0 or more.
+  /// Dijkstra's algorithm from `source`. Calls settle(node, distance, reach) for every reachable
+  /// node in order of distance, then of index; it must call reach(next, distance of next by way of
+  /// node, edge) for every neighbour. Lengths are >= 0.
   template <class Settle>
   void find(std::uint32_t source, const Settle& settle) {
     using Reached = std::pair<double, std::uint32_t>;
@@ -35,7 +35,7 @@ struct ShortestPaths {
     while (!open.empty()) {
       const auto [d, node] = open.top();
       open.pop();
-      if (d > distance[node]) continue;  // a shorter path was found since
+      if (d > distance[node]) continue;  // a shorter path was found later
       settle(node, d, reach);
     }
   }

@@ -25,19 +25,19 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
     lobes_.emplace_back(of);
   }
   if (strength_.is_auto()) {
-    found_.assign(nodes, Strengths{});
+    light_.assign(nodes, Strengths{});
     weights_.assign(nodes, weights(Strengths{}));
   }
 }
 
-SkeletonDirections::Strengths SkeletonDirections::weights(const Strengths& found) {
-  // Each strength keeps this share of all, so that its weight can grow again.
-  constexpr double given_share = 0.05;
-  const double all = std::accumulate(found.begin(), found.end(), 0.0);
+SkeletonDirections::Strengths SkeletonDirections::weights(const Strengths& light) {
+  // A fraction of all weight, distributed evenly (a prior), so that a small weight can grow again.
+  constexpr double prior_share = 0.05;
+  const double all = std::accumulate(light.begin(), light.end(), 0.0);
   Strengths weights;
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const double share = all > 0 ? found[k] / all : 1 / double(found.size());
-    weights[k] = (1 - given_share) * share + given_share / double(found.size());
+  for (std::size_t k = 0; k < light.size(); ++k) {
+    const double share = all > 0 ? light[k] / all : 1 / double(light.size());
+    weights[k] = (1 - prior_share) * share + prior_share / double(light.size());
   }
   return weights;
 }
@@ -72,30 +72,30 @@ std::vector<std::uint32_t> SkeletonDirections::update(const TrainingSamples& sam
   if (!strength_.is_auto()) return {};
   pool.for_each(static_cast<int>(lobes_.size()), [&](int i) {
     const auto node = static_cast<std::size_t>(i);
-    Strengths& found = found_[node];
+    Strengths& light = light_[node];
     for (const TrainingSample& s : samples.of(node)) {
       if (!(s.pdf > 0) || !(s.reflected > 0)) continue;
       const auto densities = lobes_[node].pdf_of_powers(s.x, s.w);
       const double sum = mixture(weights_[node], densities);
       if (!(sum > 0)) continue;
-      for (std::size_t k = 0; k < found.size(); ++k) {
-        found[k] += double(s.reflected) * weights_[node][k] * double(densities[k]) / sum;
+      for (std::size_t k = 0; k < light.size(); ++k) {
+        light[k] += double(s.reflected) * weights_[node][k] * double(densities[k]) / sum;
       }
     }
-    weights_[node] = weights(found);
+    weights_[node] = weights(light);
   });
   return {};
 }
 
 void SkeletonDirections::load(ByteReader& in) {
-  std::vector<Strengths> found = in.get_vector<Strengths>();
-  bool good = found.size() == found_.size();
-  for (const Strengths& f : found) {
+  std::vector<Strengths> light = in.get_vector<Strengths>();
+  bool good = light.size() == light_.size();
+  for (const Strengths& f : light) {
     for (const double x : f) good = good && std::isfinite(x) && x >= 0;
   }
   if (!good) throw std::runtime_error("saved strengths belong to another scene");
-  found_ = std::move(found);
-  for (std::size_t node = 0; node < found_.size(); ++node) weights_[node] = weights(found_[node]);
+  light_ = std::move(light);
+  for (std::size_t node = 0; node < light_.size(); ++node) weights_[node] = weights(light_[node]);
 }
 
 std::vector<std::pair<std::string, double>> SkeletonDirections::statistics() const {

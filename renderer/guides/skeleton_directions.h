@@ -12,11 +12,11 @@ namespace lacuna {
 
 /// guide: skeleton, and light_guide: skeleton. At the surfaces of a skeleton node, directions are
 /// sampled from lobes around its importance points, which lie on the visible parts of the shortest
-/// paths to where light arrives, or, of light paths, to what the eye sees (Noel 2015, ch. 9; 9.1
-/// leaves the latter open). Uses the thesis' unfiltered skeleton.
+/// paths to nodes where light arrives, or, for light paths, to nodes visible from the eye (Noel
+/// 2015, ch. 9; 9.1 leaves the latter open). Uses the thesis' unfiltered skeleton.
 ///
-/// Where the strength of the lobes is learned (9.6), each node has a mixture of strengths, whose
-/// weights expectation maximisation fits to the light that its paths found.
+/// If the strength of the lobes is learned (9.6), each node has a mixture of strengths, whose
+/// weights are fitted by expectation maximisation to the light that its paths gathered.
 class SkeletonDirections final : public GuidingDistribution {
  public:
   explicit SkeletonDirections(const SkeletonGuideSettings& settings)
@@ -33,7 +33,7 @@ class SkeletonDirections final : public GuidingDistribution {
 
   bool needs_space() const override { return true; }
   void prepare(const PrepareContext& context) override;
-  void save(ByteWriter& out) const override { out.put(found_); }
+  void save(ByteWriter& out) const override { out.put(light_); }
   void load(ByteReader& in) override;
   std::vector<std::pair<std::string, double>> statistics() const override;
 
@@ -55,12 +55,12 @@ class SkeletonDirections final : public GuidingDistribution {
                                     const ThreadPool& pool) override;
 
  private:
-  /// Of each strength LobeSet::power(k).
+  /// A value for each strength LobeSet::power(k).
   using Strengths = std::array<double, LobeSet::doublings>;
   using Densities = std::array<float, LobeSet::doublings>;
-  /// The weights of a node's strengths, which add up to 1.
-  static Strengths weights(const Strengths& found);
-  /// The density of a mixture, of those of its strengths.
+  /// The normalised mixture weights of a node's strengths.
+  static Strengths weights(const Strengths& light);
+  /// The density of a mixture, from the densities of its strengths.
   static double mixture(const Strengths& weights, const Densities& densities);
   float fixed() const { return static_cast<float>(*strength_.value); }
 
@@ -69,8 +69,9 @@ class SkeletonDirections final : public GuidingDistribution {
   int rays_;
   bool to_eye_ = false;
   std::optional<SurfaceLookup> lookup_;
-  std::vector<LobeSet> lobes_;              // of each node
-  std::vector<Strengths> found_, weights_;  // of each node: the light found so far; from it
+  std::vector<LobeSet> lobes_;  // of each node
+  std::vector<Strengths> light_,
+      weights_;  // of each node: the light gathered so far, and the weights from it
   std::size_t importance_nodes_ = 0;
 };
 

@@ -6,7 +6,7 @@ namespace lacuna {
 
 namespace {
 
-/// Nodes of one task, which share the arrays of ImportancePaths.
+/// Nodes per task, which share the arrays of ImportancePaths.
 constexpr std::size_t nodes_of_part = 16;
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// For each of `nodes` of the skeleton, the targets of its lobes: its importance points (Noel
-/// 2015, 9.2, 9.3). `importance`: f of each node (eq. 164).
+/// For each of `nodes` of the skeleton, the targets of its lobes: its importance points (Noel 2015,
+/// 9.2, 9.3). `importance`: f of each node (eq. 164).
 std::vector<std::vector<Target>> skeleton_targets(const PrepareContext& context,
                                                   std::span<const double> importance,
                                                   ImportanceAim aim,

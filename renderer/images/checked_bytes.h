@@ -9,7 +9,7 @@
 namespace lacuna {
 
 /// Reads an encoded image in memory from front to back, never beyond its end: every function throws
-/// SceneError, with the image's label, if it ends early.
+/// SceneError, with the image's label, if the image ends early.
 class CheckedBytes {
  public:
   CheckedBytes(std::span<const std::uint8_t> bytes, const std::string& label)
@@ -24,13 +24,13 @@ class CheckedBytes {
     return all_.subspan(at_ - n, n);
   }
   std::uint8_t byte() { return take(1)[0]; }
-  /// An integer of up to 4 bytes, its most significant byte first.
+  /// An integer of up to 4 bytes, most significant byte first.
   std::uint32_t big_endian(std::size_t bytes) {
     std::uint32_t value = 0;
     for (const std::uint8_t b : take(bytes)) value = value << 8 | b;
     return value;
   }
-  /// The bytes from `begin` to here.
+  /// The bytes from offset `begin` to the current one.
   std::span<const std::uint8_t> since(std::size_t begin) const {
     return all_.subspan(begin, at_ - begin);
   }

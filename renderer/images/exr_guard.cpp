@@ -15,16 +15,16 @@
 namespace lacuna {
 namespace {
 
-// OpenEXR File Layout: magic, version, then for each part attributes until an empty name; where
-// there are several parts, an empty header ends them.
+// OpenEXR File Layout: magic, version, then for each part attributes up to an empty name; an empty
+// header ends a file of several parts.
 constexpr std::uint32_t deep_flag = 0x800, several_parts = 0x1000;
 constexpr std::size_t longest_name = 255;
-constexpr std::uint32_t deep = 0x70656564;  // how "deepscanline" and "deeptile" begin
-constexpr std::uintmax_t offset_bytes = 8;  // of a tile, in the table after the headers
+constexpr std::uint32_t deep = 0x70656564;  // first bytes of "deepscanline" and "deeptile"
+constexpr std::uintmax_t offset_bytes = 8;  // per tile, in the table after the headers
 constexpr std::uint32_t pixel_types = 3;    // unsigned int, half, float
 
-// OpenEXR reads these without a look at the size that the file gives them: another size would let
-// it go on somewhere else than this guard.
+// OpenEXR ignores the stored size of these attributes: with another size it would continue at a
+// different position from this guard.
 struct FixedSize {
   std::string_view type;
   std::uint32_t bytes;
@@ -40,12 +40,12 @@ constexpr std::array<FixedSize, 23> fixed_sizes{{
     {"v3f", 12},        {"v3d", 24},
 }};
 
-/// Bytes as a stream, without a copy.
+/// A stream over bytes in memory, without a copy.
 class MemoryBuffer : public std::streambuf {
  public:
   explicit MemoryBuffer(std::span<const std::uint8_t> bytes) {
     char* const begin = reinterpret_cast<char*>(const_cast<std::uint8_t*>(bytes.data()));
-    setg(begin, begin, begin + bytes.size());  // it is only read
+    setg(begin, begin, begin + bytes.size());  // only read from
   }
 
  private:
@@ -78,7 +78,7 @@ class ExrHeader {
   }
 
  private:
-  /// Up to the empty name that ends a header. False if there was none before it.
+  /// Reads the attributes up to the empty name that ends a header. Returns false if there are none.
   bool check_attributes(bool first) {
     bool any = false;
     picture_ = tile_ = {};
@@ -98,7 +98,7 @@ class ExrHeader {
       const bool sized = check_value(type, at + bytes);
       if (!sized) {
         fail("attribute \"" + printable(name) + "\" has " + std::to_string(bytes) +
-             " bytes, which is no size of its type " + printable(type));
+             " bytes, not a size of its type " + printable(type));
       }
       stream_.seekg(static_cast<std::streamoff>(at + bytes));
     }
@@ -108,7 +108,7 @@ class ExrHeader {
     return any;
   }
 
-  /// The description of the pixels by an attribute.
+  /// Stores the attributes that describe the pixels.
   void note(const std::string& name, std::uint32_t bytes) {
     if (name == "dataWindow" && bytes == 16) picture_ = read_window();
     if (name == "tiles" && bytes == 9) tile_ = {integer(), integer()};
@@ -136,13 +136,13 @@ class ExrHeader {
     return {static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)};
   }
 
-  /// The library makes room for the offset of every tile, which the file holds, too.
+  /// The library allocates an offset for every tile; the file must contain them, too.
   void check_tiles() const {
     if (tile_.width == 0 || tile_.height == 0) return;
     const std::uint64_t tiles = (picture_.width + tile_.width - 1) / tile_.width *
                                 ((picture_.height + tile_.height - 1) / tile_.height);
     if (tiles > size_ / offset_bytes) {
-      refuse("is corrupt: it says that it has " + std::to_string(tiles) + " tiles, in " +
+      refuse("is corrupt: it states " + std::to_string(tiles) + " tiles, in " +
              std::to_string(size_) + " bytes");
     }
   }
@@ -189,7 +189,7 @@ class ExrHeader {
         fail("channel \"" + printable(name) + "\" has pixel type " + std::to_string(type) +
              "; allowed: 0 to " + std::to_string(pixel_types - 1));
       }
-      integer();  // whether it is linear
+      integer();  // the flag pLinear
       if (name == "R" || name.ends_with(".R")) first_colour_ = printable(name);
       if (integer() != 1 || integer() != 1) {
         refuse("has channel \"" + printable(name) +
@@ -223,14 +223,14 @@ class ExrHeader {
   }
 
   [[noreturn]] void fail(const std::string& what) const { refuse("OpenEXR header: " + what); }
-  [[noreturn]] void refuse_deep() const { refuse("is a deep image; allowed: flat ones"); }
+  [[noreturn]] void refuse_deep() const { refuse("is a deep image; allowed: flat images"); }
   [[noreturn]] void refuse(const std::string& what) const {
     throw SceneError(label_ + ": " + what);
   }
 
   const std::string& label_;
   std::uintmax_t size_;
-  // Of the part that is read.
+  // Of the part to read.
   Size picture_, tile_;
   std::optional<Chromaticities> chromaticities_;
   std::string first_colour_;  ///< the name of a red channel

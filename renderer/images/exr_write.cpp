@@ -27,7 +27,7 @@ std::vector<std::string> exr_channel_names(const std::vector<ExrLayer>& layers) 
   return names;
 }
 
-/// Beside what a job tells, nothing that differs from one writing to the next.
+/// Apart from the job's attributes, the same in every file.
 std::map<std::string, std::string> header_texts(
     const std::map<std::string, std::string>& attributes) {
   std::map<std::string, std::string> texts{{"Software", "lacuna"}};
@@ -41,7 +41,7 @@ void require_halves(const std::filesystem::path& file, const std::vector<ExrLaye
       const double v = layer.value(i);
       if (!(std::abs(v) > largest_half)) continue;
       throw std::runtime_error(
-          fmt::format("{}: a value of {} does not fit half precision (at most {}); ask for "
+          fmt::format("{}: a value of {} does not fit half precision (at most {}); set "
                       "\"pixel_type\": \"float\"",
                       file.string(), v, largest_half));
     }

@@ -16,7 +16,7 @@ struct ExrLayer {
   std::string name;                   ///< "" for the picture itself, whose channels are R, G, B
   std::vector<std::string> channels;  ///< e.g. {"R", "G", "B"}, {"Z"}
   std::vector<double> values;
-  /// In place of `values`, without a copy: these, which outlive the layer, over `divisor`.
+  /// Instead of `values`, without a copy: these sums, which must outlive the layer, over `divisor`.
   std::span<const double> sums = {};
   double divisor = 1;
 
@@ -32,10 +32,10 @@ struct ExrPicture {
   std::map<std::string, std::string> attributes;  ///< written under "lacuna:NAME"
 };
 
-/// Writes a scan-line EXR (ZIP) atomically (temporary file, fsync, rename).
-/// The file holds no date. Throws std::system_error or std::runtime_error that names the file; also
-/// if the type is half and a value would overflow. `between` is called between blocks of rows, of
-/// 16 MiB at most if they have more than 16: what it throws ends the writing.
+/// Writes a scan-line EXR (ZIP) atomically (temporary file, fsync, rename), without a date. Throws
+/// std::system_error or std::runtime_error that names the file; also if the type is half and a
+/// value would overflow. `between` is called between blocks of at most 16 MiB (at least 16 rows);
+/// an exception from it ends the writing.
 void write_exr(const std::filesystem::path& file, const ExrPicture& picture,
                const std::function<void()>& between = {});
 

@@ -12,41 +12,41 @@ namespace lacuna {
 // without decoding it, and throws SceneError with the file's name if it is truncated, of an
 // unsupported size, depth or kind, or inconsistent with its length.
 //
-// Guards of files in memory return the bytes to decode: the same image with its pixels only.
+// Guards of files in memory return the bytes to decode: the same image reduced to its pixels.
 // Profiles, comments, thumbnails and camera data never reach the library.
 
 constexpr int max_picture_side = 32768;  ///< pixels
 constexpr int max_texture_side = 16384;  ///< texels
-/// Limit of the decoded texels of all textures of a scene together: 2 GiB at 4 bytes a texel.
+/// Limit of the decoded texels of all textures of a scene together: 2 GiB at 4 bytes per texel.
 constexpr std::uint64_t max_scene_texels = std::uint64_t{1} << 29;
 /// Limit of the encoded bytes of all textures of a scene together (gltf::TextureTable).
 constexpr std::uint64_t max_encoded_bytes = std::uint64_t{2} << 30;
 
-/// Validates the headers of an OpenEXR file, which the libraries trust: they allocate memory for
-/// attributes, rows and tiles of any stated number before they read them, and an unknown channel
-/// type ends the process. Allowed are flat parts of up to max_picture_side with all channels at
-/// full resolution, and RGB of the primaries of Rec. 709.
+/// Validates the headers of an OpenEXR file. The libraries trust them: they allocate memory for any
+/// stated number of attributes, rows and tiles before they read them, and an unknown channel type
+/// aborts the process. Allowed: flat parts of up to max_picture_side with all channels at full
+/// resolution, and RGB with the primaries of Rec. 709.
 void check_exr_header(std::span<const std::uint8_t> exr, const std::string& label);
 
-/// A PNG of 8 or 16 bits or less, of any colour type, up to max_texture_side.
+/// A PNG of up to 16 bits and max_texture_side, of any colour type.
 std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std::string& label);
 
 /// A JPEG of 8 bits, grey or three colours, in at most 500 scans, up to max_texture_side.
 std::vector<std::uint8_t> plain_jpeg(std::span<const std::uint8_t> jpeg, const std::string& label);
 
-/// The number of texels by the header of a PNG or the frame header of a JPEG. Does not validate the
-/// rest of the file.
+/// The number of texels, from the header of a PNG or the frame header of a JPEG. Does not validate
+/// the rest of the file.
 std::uint64_t png_texels(std::span<const std::uint8_t> png, const std::string& label);
 std::uint64_t jpeg_texels(std::span<const std::uint8_t> jpeg, const std::string& label);
 
-/// A Radiance picture to decode, and what its header multiplied each channel of light with.
+/// A Radiance picture to decode, and the factors that its header states for each channel.
 struct PlainHdr {
   std::vector<std::uint8_t> bytes;
   std::array<double, 3> multiplied{1, 1, 1};  ///< product of all EXPOSURE and COLORCORR lines
 };
 
-/// A Radiance picture (`32-bit_rle_rgbe`, which a header without FORMAT means too; top row first)
-/// up to max_picture_side: rows flat or channel by channel. Rows in the old run-length encoding,
+/// A Radiance picture (`32-bit_rle_rgbe`, also the default without FORMAT; top row first) up to
+/// max_picture_side, with rows flat or channel by channel. Rows in the old run-length encoding,
 /// which the library does not support, are expanded. PRIMARIES may be Radiance's or those of Rec.
 /// 709.
 PlainHdr plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label);
@@ -55,13 +55,13 @@ PlainHdr plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label);
 using Chromaticities = std::array<double, 8>;
 /// ITU-R BT.709-6, items 1.3 and 1.4: the RGB of Lacuna and of glTF.
 inline constexpr Chromaticities rec709{.64, .33, .30, .60, .15, .06, .3127, .3290};
-/// Within .002 a coordinate, what three written digits leave open.
+/// Whether all coordinates agree to .002, as values written with three digits do.
 bool are_close(const Chromaticities& a, const Chromaticities& b);
-/// "0.64 0.33 0.3 ...", as errors show them.
+/// "0.64 0.33 0.3 ...", as in errors.
 std::string chromaticities_text(const Chromaticities& xy);
 
 /// The first picture of a TIFF of up to 4 GiB and max_picture_side: 1, 3 or 4 channels of 16- or
-/// 32-bit floats, stored plainly or by LZW, Deflate or PackBits.
+/// 32-bit floats, uncompressed or compressed by LZW, Deflate or PackBits.
 std::vector<std::uint8_t> plain_tiff(std::span<const std::uint8_t> tiff, const std::string& label);
 
 }  // namespace lacuna

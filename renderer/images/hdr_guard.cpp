@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t pixel_bytes = 4;  // three mantissas and their exponent
 constexpr std::size_t shortest_by_channel = 8, longest_by_channel = 0x7fff;
 
-/// Of Radiance (`src/common/color.h`), which everyone reads as Rec. 709.
+/// Radiance's primaries (`src/common/color.h`), commonly read as Rec. 709.
 constexpr Chromaticities radiance_primaries{.640, .330, .290, .600, .150, .060, 1. / 3, 1. / 3};
 
 class HdrGuard {
@@ -42,7 +42,7 @@ class HdrGuard {
     return text;
   }
 
-  /// The numbers behind NAME=, if the line begins so.
+  /// The numbers after NAME=, if the line begins with it.
   template <std::size_t N>
   std::optional<std::array<double, N>> numbers(const std::string& text, const std::string& name,
                                                const std::string& allowed) const {
@@ -87,7 +87,7 @@ class HdrGuard {
     for (std::size_t k = 0; k < 3; ++k) {
       multiplied_[k] *= factors[k];
       if (!(factors[k] > 0) || !std::isnormal(multiplied_[k])) {
-        refuse(text, "numbers above 0, with a product that a double can hold");
+        refuse(text, "numbers above 0, with a product within double precision");
       }
     }
   }
@@ -122,7 +122,7 @@ class HdrGuard {
     copy_since(begin);
   }
 
-  /// One channel of a row: runs of one byte and of different ones.
+  /// One channel of a row: runs of equal bytes and literal bytes.
   void skip_runs(std::size_t width) {
     while (width > 0) {
       const std::uint8_t code = in_.byte();
@@ -134,8 +134,8 @@ class HdrGuard {
     }
   }
 
-  /// Pixel after pixel. The old form: (1, 1, 1, n) repeats the one before n times, and another such
-  /// at once after it 256 n times.
+  /// Flat pixels, with the old run-length encoding: (1, 1, 1, n) repeats the previous pixel n
+  /// times, a second one in succession 256 n times.
   void read_flat(std::size_t width, std::span<const std::uint8_t> pixel) {
     std::span<const std::uint8_t> last;
     unsigned shift = 0;

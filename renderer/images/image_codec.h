@@ -10,20 +10,20 @@
 
 namespace lacuna {
 
-// The interface of the image module: `module/openimageio.cpp` implements it, `image_module.h` loads
+// The interface of the image module. `module/openimageio.cpp` implements it, `image_module.h` loads
 // it, and only this folder calls it, after its own validation. All functions throw
 // std::runtime_error with a reason that names no file, and std::bad_alloc.
 
-/// The supported formats. The format is always known; none is found by trying.
+/// The supported formats. The caller determines the format; the module never guesses it.
 enum class ImageFormat { openexr, png, jpeg, radiance_hdr, tiff };
 
-/// The header of one picture of a file, as the file gives it.
+/// The header of one picture of a file, as stored.
 struct PictureHeader {
-  int width = 0, height = 0;                 ///< pixels that are stored
-  bool cropped = false;                      ///< a part of a larger picture is stored
+  int width = 0, height = 0;                 ///< stored pixels
+  bool cropped = false;                      ///< only a part of a larger picture is stored
   int orientation = 1;                       ///< as in TIFF; 1: top row first, left to right
   std::vector<std::string> channels;         ///< names, e.g. "R", "even.G"
-  std::map<std::string, std::string> texts;  ///< its attributes that are text
+  std::map<std::string, std::string> texts;  ///< text attributes
 };
 
 /// An open file. Not thread-safe.
@@ -32,16 +32,16 @@ class PictureFile {
   virtual ~PictureFile() = default;
   virtual const std::vector<PictureHeader>& parts() const = 0;
   /// Reads `channels` (indices into the header's) of all pixels to `out`: interleaved, top row
-  /// first, width x height x channels.size() values. Half and unsigned integer channels are
-  /// converted value by value, nothing else is changed.
+  /// first, width x height x channels.size() values. Half and unsigned integer values are converted
+  /// to float, nothing else is changed.
   virtual void read(std::size_t part, std::span<const int> channels, float* out) = 0;
 };
 
-/// An image of integers as its file stores it: alpha not multiplied in, no colour conversion.
+/// An image of integers as stored: alpha not multiplied in, no colour conversion.
 struct StoredTexels {
   int width = 0, height = 0;
   int channels = 0;                        ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA
-  int bits = 0;                            ///< of a value: 8 or 16, in the machine's byte order
+  int bits = 0;                            ///< per value: 8 or 16, in native byte order
   std::unique_ptr<std::uint8_t[]> values;  ///< interleaved, top row first
 };
 
@@ -55,8 +55,8 @@ struct ExrContent {
   int width = 0, height = 0;
   std::vector<std::string> channels;
   bool half = false;  ///< the type of all values: half, or float
-  /// The values of some rows, interleaved in the order of `channels`; they last until the next
-  /// call. Blocks are asked for from the top. What it throws comes out of encode_exr().
+  /// Returns the values of some rows, interleaved in the order of `channels`, valid until the next
+  /// call. Called for blocks of rows from the top. encode_exr() passes on its exceptions.
   std::function<const void*(const RowBlock&)> rows;
   std::map<std::string, std::string> texts;  ///< attributes
 };
@@ -78,7 +78,8 @@ class ImageCodec {
                                   std::span<const std::uint8_t> rgb) const = 0;
 };
 
-/// The name and the type of what the module exports: the one codec, which is never destroyed.
+/// The name and type of the module's exported function: it returns the codec, which is never
+/// destroyed.
 constexpr const char* image_codec_symbol = "lacuna_image_codec";
 using ImageCodecFunction = const ImageCodec* (*)();
 

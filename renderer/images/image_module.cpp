@@ -31,34 +31,32 @@ namespace {
 
 constexpr const char* module_name = "lacuna-images.so";
 
-/// Most of the time goes to looking up symbols, and a library that is loaded for the sake of
-/// another looks through all 260 for each. Loaded before, these and what they need look among their
-/// own: .095 s of CPU in place of .17 s. Each comes after what it needs; it is no error if one
-/// lacks.
+/// Loading spends most of its time on symbol lookup: a dependency of another library searches all
+/// 260 libraries for each symbol. If these are loaded first, they and their dependencies search
+/// only their own: .095 s of CPU instead of .17 s. Each follows its dependencies; a missing one is
+/// no error.
 constexpr const char* loaded_first[] = {"libgdcmMSFF.so.3.0", "libproj.so.25", "libheif.so.1",
                                         "libspatialite.so.7", "libgdal.so.32", "libavformat.so.59",
                                         "libopenvdb.so.10.0"};
 
-/// More than the libraries take of a limit of memory: measured are 400 MiB of address space, and a
-/// stack for each of five threads.
+/// An upper bound of the libraries' memory: measured are 400 MiB of address space, and a stack for
+/// each of five threads.
 constexpr std::size_t room_without_stacks = std::size_t{1} << 30;
 constexpr std::size_t threads_of_libraries = 8;
 
-/// A child that loads the module (.2 s of CPU) and waits for what never comes uses no more CPU:
-/// after so long without any it is given up. What were to use it without end, its limit of CPU
-/// ends.
+/// A child that loads the module (.2 s of CPU) and deadlocks uses no CPU: it is killed after this
+/// time without any. The limit of CPU time ends an endless loop.
 constexpr double longest_idle_seconds = 2;
 constexpr rlim_t most_cpu_seconds = 20;
 
 struct Loaded {
-  const ImageCodec* codec = nullptr;  ///< null: `error`
+  const ImageCodec* codec = nullptr;  ///< null: see `error`
   std::string error;
   bool lacks_memory = false;
   ImageModuleTimes times;
 };
 
-/// Installed, beside the program, or for programs that test it in the folder of those that are
-/// tested.
+/// Installed, beside the program, or, for tests, in the folder of the tested programs.
 std::filesystem::path find_module() {
   const std::filesystem::path folder =
       std::filesystem::read_symlink("/proc/self/exe").parent_path();
@@ -71,10 +69,10 @@ std::filesystem::path find_module() {
                                                                                          : beside;
 }
 
-/// The libraries allocate some 30 MB in small pieces as they start, and glibc asks the system for
-/// each single page in a thread other than the first: 8000 calls, .02 s. Room that was there once
-/// it finds again.
-void make_room_for_small_pieces() {
+/// The libraries allocate about 30 MB in small blocks at start-up; outside the main thread glibc
+/// requests each page separately: 8000 system calls, .02 s. It reuses memory that was allocated and
+/// freed before.
+void grow_heap() {
   constexpr std::size_t piece = 120 * 1024, pieces = 32 * 1024 * 1024 / piece;
   std::vector<std::unique_ptr<char[]>> room;
   room.reserve(pieces);
@@ -88,7 +86,7 @@ bool is_limited(decltype(RLIMIT_AS) resource) {
   return ::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-/// Whether memory of this process has a limit (`ulimit -v` or `-d`).
+/// Whether the memory of this process is limited (`ulimit -v` or `-d`).
 bool memory_is_limited() { return is_limited(RLIMIT_AS) || is_limited(RLIMIT_DATA); }
 
 bool has_room(std::size_t bytes, bool keep) {
@@ -113,7 +111,7 @@ void* open_library(const char* file) { return ::dlopen(file, RTLD_LAZY | RTLD_LO
 
 void load_codec(Loaded& loaded) {
   const std::filesystem::path file = find_module();
-  make_room_for_small_pieces();
+  grow_heap();
   for (const char* library : loaded_first) open_library(library);
   void* const library = open_library(file.c_str());
   void* const function = library == nullptr ? nullptr : ::dlsym(library, image_codec_symbol);
@@ -127,7 +125,8 @@ void load_codec(Loaded& loaded) {
   loaded.codec = reinterpret_cast<ImageCodecFunction>(function)();
 }
 
-/// Ends a child of loads_in_a_child(): 0 if the module can be loaded, 1 if that lacks memory.
+/// Runs in a child of loads_in_a_child(): exits with 0 if the module can be loaded, 1 if memory is
+/// insufficient.
 [[noreturn]] void try_to_load() {
   ::prctl(PR_SET_DUMPABLE, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -136,20 +135,20 @@ void load_codec(Loaded& loaded) {
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(nowhere, STDERR_FILENO);
-  // What one loading takes and another does not, by the order of its threads.
+  // Memory use differs between loads, by the order of the threads.
   constexpr std::size_t margin = std::size_t{16} << 20;
   if (!has_room(margin, true)) ::_exit(1);
   try {
     Loaded loaded;
     load_codec(loaded);
-    ::_exit(loaded.lacks_memory ? 1 : 0);  // what else is wrong, the parent finds as well
+    ::_exit(loaded.lacks_memory ? 1 : 0);  // the parent finds any other error itself
   } catch (...) {
     ::_exit(1);
   }
 }
 
-/// Waits until `pipe` is closed at the other end, by the end of `child`. False: it hangs.
-bool ends(pid_t child, int pipe) {
+/// Waits until `child` ends, which closes the other end of `pipe`. Returns false if it hangs.
+bool wait_for_end(pid_t child, int pipe) {
   clockid_t clock{};
   if (::clock_getcpuclockid(child, &clock) != 0) return false;
   constexpr int step_ms = 100;
@@ -165,16 +164,16 @@ bool ends(pid_t child, int pipe) {
   return true;
 }
 
-/// Loads the module in a copy of this process. Where memory is short, constructors of the libraries
-/// throw what nobody catches, or wait for threads that could not start: the process ends with
-/// SIGABRT, or never.
+/// Loads the module in a copy of this process. If memory is insufficient, constructors of the
+/// libraries throw uncaught exceptions, or wait for threads that could not start: the process
+/// aborts with SIGABRT, or never ends.
 bool loads_in_a_child() {
-  std::array<int, 2> alive{};  // a pipe whose other end closes when the child ends
+  std::array<int, 2> alive{};  // closed at the other end when the child ends
   if (::pipe2(alive.data(), O_CLOEXEC) != 0) return false;
   const pid_t child = ::fork();
   if (child == 0) try_to_load();
   ::close(alive[1]);
-  const bool ended = child > 0 && ends(child, alive[0]);
+  const bool ended = child > 0 && wait_for_end(child, alive[0]);
   ::close(alive[0]);
   if (child < 0) return false;
   if (!ended) ::kill(child, SIGKILL);
@@ -201,12 +200,12 @@ Loaded load() {
   return loaded;
 }
 
-/// The one load of this process.
-struct TheLoad {
+/// The load of this process.
+struct ModuleLoad {
   std::mutex mutex;
   std::shared_future<Loaded> result;
 
-  /// `when`: at once on its own thread, or by the first thread that waits; the first call decides.
+  /// `when`: at once on its own thread, or by the first thread that waits. The first call decides.
   std::shared_future<Loaded> begin(std::launch when) {
     const std::lock_guard lock(mutex);
     if (!result.valid()) result = std::async(when, load).share();
@@ -218,8 +217,8 @@ struct TheLoad {
   }
 };
 
-TheLoad& the_load() {
-  static TheLoad load;
+ModuleLoad& module_load() {
+  static ModuleLoad load;
   return load;
 }
 
@@ -227,29 +226,31 @@ const ImageCodec& codec_of(const Loaded& loaded) {
   if (loaded.codec != nullptr) return *loaded.codec;
   if (loaded.lacks_memory) {
     throw MemoryLimitError(std::string(module_name) +
-                           ": the libraries that read and write images do not fit the limit of "
-                           "memory (ulimit -v or -d); they take some 450 MiB of address space");
+                           ": the libraries that read and write images exceed the memory limit "
+                           "(ulimit -v or -d); they need about 450 MiB of address space");
   }
-  // No fault of the job: once the module is there, the same job goes on.
+  // Not the job's fault: the same job can continue once the module is there.
   throw std::system_error(ELIBACC, std::generic_category(), loaded.error);
 }
 
 }  // namespace
 
 ImageModuleLoading::ImageModuleLoading() {
-  // The job might take memory that is limited while the module is being loaded.
+  // Otherwise the job might use up the limited memory while the module is being loaded.
   const bool at_once = memory_is_limited();
-  const auto loading = the_load().begin(at_once ? std::launch::deferred : std::launch::async);
+  const auto loading = module_load().begin(at_once ? std::launch::deferred : std::launch::async);
   if (at_once) loading.wait();
 }
-ImageModuleLoading::~ImageModuleLoading() { the_load().begin(std::launch::deferred).wait(); }
+ImageModuleLoading::~ImageModuleLoading() { module_load().begin(std::launch::deferred).wait(); }
 void ImageModuleLoading::wait() const { image_codec(); }
 
-const ImageCodec& image_codec() { return codec_of(the_load().begin(std::launch::deferred).get()); }
+const ImageCodec& image_codec() {
+  return codec_of(module_load().begin(std::launch::deferred).get());
+}
 
 std::optional<ImageModuleTimes> image_module_times() {
-  if (!the_load().begun()) return std::nullopt;
-  return the_load().begin(std::launch::deferred).get().times;
+  if (!module_load().begun()) return std::nullopt;
+  return module_load().begin(std::launch::deferred).get().times;
 }
 
 }  // namespace lacuna

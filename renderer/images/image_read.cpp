@@ -41,7 +41,7 @@ ReadFile read_all(const std::filesystem::path& path) {
   return file;
 }
 
-/// The format by the magic bytes, whatever the file's name; none for an unsupported format.
+/// The format by the magic bytes, regardless of the file's name; none for an unsupported format.
 std::optional<ImageFormat> format_of(const ReadFile& file) {
   const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   using namespace std::string_view_literals;
@@ -51,29 +51,30 @@ std::optional<ImageFormat> format_of(const ReadFile& file) {
   return std::nullopt;
 }
 
-/// The channels of a layer that hold its colours.
+/// The channels of a layer with its colours.
 struct ColourChannels {
-  std::vector<int> places;  ///< three, or one that is grey; none if the layer is missing
+  std::vector<int> indices;  ///< three, or one for grey; empty if the layer is missing
   bool xyz = false;
 };
 
-/// The place of a layer's channel; -1 if it lacks.
-int channel_place(const PictureHeader& header, const std::string& layer, const std::string& name) {
+/// The index of a layer's channel; -1 if it is missing.
+int channel_index(const PictureHeader& header, const std::string& layer, const std::string& name) {
   const auto it = std::find(header.channels.begin(), header.channels.end(),
                             layer.empty() ? name : layer + "." + name);
   return it == header.channels.end() ? -1 : static_cast<int>(it - header.channels.begin());
 }
 
 ColourChannels find_channels(const PictureHeader& header, const std::string& layer) {
-  const auto place = [&](const char* name) { return channel_place(header, layer, name); };
+  const auto index_of = [&](const char* name) { return channel_index(header, layer, name); };
   for (const auto& names : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}}) {
-    const std::vector<int> places{place(names[0]), place(names[1]), place(names[2])};
-    if (*std::min_element(places.begin(), places.end()) >= 0) return {places, *names[0] == 'X'};
+    const std::vector<int> indices{index_of(names[0]), index_of(names[1]), index_of(names[2])};
+    if (*std::min_element(indices.begin(), indices.end()) >= 0) return {indices, *names[0] == 'X'};
   }
-  // Y is grey by itself; beside these it is one of several channels of a colour. Z alone is depth.
+  // Y alone is grey; beside these it is one channel of a colour. Z alone is depth.
   const auto parts = {"R", "G", "B", "X", "RY", "BY"};
-  const bool alone = std::all_of(parts.begin(), parts.end(), [&](auto* p) { return place(p) < 0; });
-  if (alone && place("Y") >= 0) return {{place("Y")}};
+  const bool alone =
+      std::all_of(parts.begin(), parts.end(), [&](auto* p) { return index_of(p) < 0; });
+  if (alone && index_of("Y") >= 0) return {{index_of("Y")}};
   return {};
 }
 
@@ -81,7 +82,7 @@ ColourChannels find_channels(const PictureHeader& header, const std::string& lay
                                     const std::string& layer) {
   std::vector<std::string> missing;
   for (const std::string name : {"R", "G", "B"}) {
-    if (channel_place(header, layer, name) >= 0) continue;
+    if (channel_index(header, layer, name) >= 0) continue;
     missing.push_back(layer.empty() ? name : layer + "." + name);
   }
   fail(file, fmt::format("lacks channel {}; it has {}", fmt::join(missing, ", "),
@@ -98,14 +99,14 @@ void check_header(const std::filesystem::path& file, const PictureHeader& header
     fail(file, "is a crop (its data window is not its display window); allowed: whole images");
   }
   if (header.orientation != 1) {
-    fail(file, "is stored turned or mirrored; allowed: top row first, left to right");
+    fail(file, "is stored rotated or mirrored; allowed: top row first, left to right");
   }
 }
 
 /// Linear RGB of Rec. 709 from CIE XYZ: the inverse of the matrix whose columns are the primaries,
-/// scaled to add up to the white (ITU-R BT.709-6; SMPTE RP 177). What rounding to half precision
-/// leaves below 0 of a colour that the primaries can mix is 0: it is at most 2^-11 of the largest
-/// of X, Y, Z times the sum of a row's magnitudes, 5.28.
+/// scaled to sum to the white (ITU-R BT.709-6; SMPTE RP 177). Negative values within the rounding
+/// error of half precision become 0: at most 2^-11 of the largest of X, Y, Z times the sum of a
+/// row's magnitudes, 5.28.
 Rgb rgb_of_xyz(const Rgb& xyz) {
   constexpr std::array<std::array<float, 3>, 3> matrix{{{3.2409699F, -1.5373832F, -0.4986108F},
                                                         {-0.9692436F, 1.8759675F, 0.0415551F},
@@ -124,10 +125,10 @@ FloatImage read_part(PictureFile& in, std::size_t part, const ColourChannels& co
   const PictureHeader& header = in.parts()[part];
   const std::size_t pixels =
       static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
-  const std::size_t read = colours.places.size();
-  // Not set to zero: memory is used up only as pixels come, however large the header says they are.
+  const std::size_t read = colours.indices.size();
+  // Not set to zero: memory is committed only as pixels arrive, however large the header's size.
   const auto stored = std::make_unique_for_overwrite<float[]>(pixels * read);
-  in.read(part, colours.places, stored.get());
+  in.read(part, colours.indices, stored.get());
   FloatImage result{header.width, header.height, std::vector<float>(pixels * 3), {}, {}};
   for (const auto& [name, text] : header.texts) {
     if (name.starts_with("lacuna:")) result.attributes[name] = text;
@@ -148,14 +149,14 @@ FloatImage read_layer(const std::filesystem::path& file, PictureFile& in,
                       const std::string& layer) {
   for (std::size_t part = 0; part < in.parts().size(); ++part) {
     const ColourChannels channels = find_channels(in.parts()[part], layer);
-    if (channels.places.empty()) continue;
+    if (channels.indices.empty()) continue;
     check_header(file, in.parts()[part]);
     return read_part(in, part, channels);
   }
   fail_for_channels(file, in.parts().front(), layer);
 }
 
-/// The guards come first; without a picture in the file the module is not even loaded.
+/// Validates first: a file without a picture does not even load the module.
 FloatImage read_as(ImageFormat format, ReadFile file, const std::string& layer) {
   const std::string label = file.path.string();
   std::array<double, 3> multiplied{1, 1, 1};
@@ -184,7 +185,7 @@ FloatImage read_as(ImageFormat format, ReadFile file, const std::string& layer) 
   }
 }
 
-/// Throws SceneError where a value is not `good`.
+/// Throws SceneError if a value is not `good`.
 template <class Good>
 void require(const FloatImage& image, const std::string& label, const char* allowed, Good good) {
   const auto it = std::find_if_not(image.rgb.begin(), image.rgb.end(), good);

@@ -16,7 +16,7 @@ struct FloatImage {
   std::vector<float> rgb;  ///< 3 x width x height
   /// String attributes of its header whose names begin with "lacuna:".
   std::map<std::string, std::string> attributes;
-  InputFile file = {};  ///< size and hash of what it was read from
+  InputFile file = {};  ///< size and hash of the file
 
   /// Pixel (x, y), 0 <= x < width, 0 <= y < height.
   Rgb at(int x, int y) const {
@@ -26,22 +26,23 @@ struct FloatImage {
   }
 };
 
-/// Reads an OpenEXR or Radiance HDR file, by its magic bytes, of up to 32768 pixels a side.
-/// `layer` chooses the channels of an EXR: empty means R, G, B, or X, Y, Z (CIE 1931), which become
-/// linear RGB of Rec. 709, or Y as grey; "half_a" means half_a.R, half_a.G, half_a.B and so on.
-/// Values of Radiance HDR are divided by the EXPOSURE and COLORCORR of its header. Otherwise values
-/// are kept as they are, non-finite ones too. Throws SceneError: no such file or layer, another
-/// format or other primaries, corrupt, deep, or a crop of a larger image; InputUnreadable if it
-/// cannot be read now; std::system_error (ELIBACC) if the module of images is missing.
+/// Reads an OpenEXR or Radiance HDR file, by its magic bytes, of up to 32768 pixels a side. `layer`
+/// selects the channels of an EXR: "half_a" means half_a.R, half_a.G, half_a.B and so on; empty
+/// means R, G, B, or X, Y, Z (CIE 1931), converted to linear RGB of Rec. 709, or Y as grey. Values
+/// of Radiance HDR are divided by the EXPOSURE and COLORCORR of its header. Otherwise values are
+/// unchanged, including non-finite ones. Throws SceneError for a missing file or layer, another
+/// format, other primaries, and files that are corrupt, deep or a crop of a larger image;
+/// InputUnreadable if it cannot be read now; std::system_error (ELIBACC) if the image module is
+/// missing.
 FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer = "");
 
 /// Reads a reference image, which may also be a TIFF of floats.
 FloatImage read_reference_image(const std::filesystem::path& file);
 
-/// Throws SceneError with `label`, the position and the value of the first pixel that is negative
-/// or not finite, which radiance cannot be, and the number of such values.
+/// Throws SceneError if a value is negative or not finite, which radiance cannot be, with `label`,
+/// the position and value of the first such pixel, and the number of such values.
 void require_radiance(const FloatImage& image, const std::string& label);
-/// The same for values that are not finite.
+/// Throws SceneError in the same way, only for values that are not finite.
 void require_finite(const FloatImage& image, const std::string& label);
 
 }  // namespace lacuna

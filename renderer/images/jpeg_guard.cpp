@@ -14,7 +14,7 @@ constexpr std::uint8_t start_of_image = 0xD8, end_of_image = 0xD9, start_of_scan
                        app0 = 0xE0, adobe = 0xEE, last_app = 0xEF, comment = 0xFE;
 /// Frames that the library decodes: baseline, extended and progressive, Huffman or arithmetic.
 constexpr std::array<std::uint8_t, 5> frames{0xC0, 0xC1, 0xC2, 0xC9, 0xCA};
-/// More make a small file take minutes.
+/// With more scans a small file takes minutes.
 constexpr int most_scans = 500;
 
 bool is_restart(std::uint8_t marker) { return marker >= 0xD0 && marker <= 0xD7; }
@@ -22,14 +22,14 @@ bool begins_frame(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != huffman_tables && marker != jpeg_extension &&
          marker != arithmetic_tables;
 }
-/// Whether texels depend on a segment: not on comments, nor on application data but those of JFIF
-/// and Adobe, which say what the colours are.
+/// Whether texels depend on a segment: not on comments, nor on application data other than JFIF's
+/// and Adobe's, which define the colours.
 bool makes_texels(std::uint8_t marker) {
   if (marker >= app0 && marker <= last_app) return marker == app0 || marker == adobe;
   return marker != comment;
 }
 
-/// Gives its texels.
+/// Validates a frame and returns its number of texels.
 std::uint64_t check_frame(std::uint8_t marker, CheckedBytes segment) {
   if (std::find(frames.begin(), frames.end(), marker) == frames.end()) {
     segment.fail("is coded as frame type " + std::to_string(marker - 0xC0) +
@@ -54,7 +54,7 @@ class JpegGuard {
     plain_.reserve(jpeg.size());
   }
 
-  /// Of the first frame.
+  /// The number of texels of the first frame.
   std::uint64_t texels() {
     while (texels_ == 0) {
       const std::uint8_t marker = next_marker();
@@ -73,7 +73,7 @@ class JpegGuard {
   }
 
  private:
-  /// Any number of 0xFF may stand before a marker.
+  /// A marker may be preceded by any number of 0xFF.
   std::uint8_t next_marker() {
     if (in_.byte() != 0xFF) in_.fail("is corrupt: a marker is missing");
     std::uint8_t marker = 0xFF;
@@ -105,7 +105,8 @@ class JpegGuard {
     plain_.insert(plain_.end(), all.begin(), all.end());
   }
 
-  /// To the marker that follows: 0xFF 0x00 stands for the byte 0xFF, and restarts belong to it.
+  /// Skips to the marker after the scan: 0xFF 0x00 is an escaped 0xFF, and restart markers belong
+  /// to the scan.
   void skip_scan() {
     for (;;) {
       CheckedBytes ahead = in_;

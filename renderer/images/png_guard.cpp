@@ -9,15 +9,15 @@ namespace {
 
 constexpr std::size_t png_signature_bytes = 8;
 constexpr std::uint32_t png_header_bytes = 13;
-/// Deflate makes at most so many bytes of one.
+/// The largest expansion of Deflate, bytes per byte.
 constexpr std::uint64_t largest_expansion = 1032;
 
-/// The values of a texel, by colour type: grey, -, RGB, palette, grey and alpha, -, RGBA.
+/// Values per texel, by colour type: grey, -, RGB, palette, grey and alpha, -, RGBA.
 constexpr std::uint64_t channels_of[] = {1, 0, 3, 1, 2, 0, 4};
 
 struct PngHeader {
   std::uint64_t width = 0, height = 0, depth = 0, colour_type = 0;
-  /// Of all texels, before they are compressed.
+  /// Bytes of all texels, uncompressed.
   std::uint64_t bytes() const { return width * height * depth * channels_of[colour_type] / 8; }
 };
 
@@ -55,14 +55,14 @@ std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std
     const std::uint32_t length = in.big_endian(4);
     type = {reinterpret_cast<const char*>(in.take(4).data()), 4};
     const auto data = in.take(length);
-    in.take(4);  // the checksum, which the library compares
+    in.take(4);  // the checksum, which the library verifies
     if ((begin == png_signature_bytes) != (type == "IHDR") ||
         (type == "IHDR" && length != png_header_bytes)) {
       in.fail("is corrupt: it does not begin with its size");
     }
     if (type == "IHDR") header = read_png_header({data, label});
     if (type == "IDAT") compressed += length;
-    // What a reader must know begins with a capital; of the rest, transparency alone makes texels.
+    // Critical chunks begin with a capital; of the others, only transparency affects texels.
     const bool needed = (static_cast<unsigned char>(type[0]) & 0x20) == 0 || type == "tRNS";
     const auto chunk = in.since(begin);
     if (needed) plain.insert(plain.end(), chunk.begin(), chunk.end());

@@ -12,7 +12,7 @@ std::string encode_png(int width, int height, std::span<const std::uint8_t> rgb)
     const EncodedImage bytes = codec.encode_png(width, height, rgb);
     return {bytes.begin(), bytes.end()};
   } catch (const std::runtime_error& e) {
-    throw std::runtime_error(std::string("a PNG cannot be made: ") + e.what());
+    throw std::runtime_error(std::string("cannot encode a PNG: ") + e.what());
   }
 }
 

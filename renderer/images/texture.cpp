@@ -12,8 +12,8 @@
 namespace lacuna {
 namespace {
 
-/// What a byte means: 256 entries for colours under an encoding, then 256 for alpha, which is
-/// always linear. One table for both lets a texel's four bytes be looked up at once.
+/// The linear values of bytes: 256 entries for colours under an encoding, then 256 for alpha, which
+/// is always linear. One table for both allows a texel's four bytes to be looked up at once.
 using ByteTable = std::array<float, 512>;
 
 /// IEC 61966-2-1.
@@ -34,8 +34,7 @@ ByteTable make_table(Texture::Encoding encoding) {
 const ByteTable linear_table = make_table(Texture::Encoding::linear);
 const ByteTable srgb_table = make_table(Texture::Encoding::srgb);
 
-/// The four linear values of the texel at `p`. Four loads beat a gather on the machine this was
-/// measured on.
+/// The four linear values of the texel at `p`. Four loads were measured to be faster than a gather.
 inline __m128 linear_texel(const std::uint8_t* p, const float* table) {
   return _mm_setr_ps(table[p[0]], table[p[1]], table[p[2]], table[256 + p[3]]);
 }
@@ -44,13 +43,13 @@ inline __m128 lerp(__m128 a, __m128 b, __m128 t) {
   return _mm_add_ps(a, _mm_mul_ps(_mm_sub_ps(b, a), t));
 }
 
-/// The two texels that a coordinate lies between, and where.
+/// The two texels around a coordinate, and its position between them.
 struct Pair {
   int first, second;
-  float weight;  ///< of the second
+  float weight;  ///< of `second`
 };
 
-/// Always inlined: as a call it costs as much as all the rest of a lookup.
+/// Always inlined: a call would cost as much as the rest of a lookup.
 [[gnu::always_inline]] inline Pair between(float u, int size, Texture::Wrap wrap) {
   // Reduced first: a huge coordinate would overflow the integers below.
   switch (wrap) {
@@ -68,7 +67,7 @@ struct Pair {
   const float x = u * static_cast<float>(size) - 0.5F;  // in [-0.5, size - 0.5]
   const float below = std::floor(x);
   Pair pair{static_cast<int>(below), static_cast<int>(below) + 1, x - below};
-  // At the border repeat continues on the other side; a mirrored border repeats its own texel.
+  // At the border, repeat continues on the other side; a mirrored border repeats its own texel.
   const bool around = wrap == Texture::Wrap::repeat;
   if (pair.first < 0) pair.first = around ? size - 1 : 0;
   if (pair.second >= size) pair.second = around ? 0 : size - 1;
@@ -102,7 +101,7 @@ std::uint64_t Texture::texels() const {
 struct Texture::Footprint {
   const std::uint8_t* upper;  ///< rows
   const std::uint8_t* lower;
-  std::size_t left, right;   ///< in a row
+  std::size_t left, right;   ///< within a row
   float weight_x, weight_y;  ///< of right and lower
 };
 

@@ -16,7 +16,7 @@ struct Rgba {
   float a = 1;
 };
 
-/// A texture of a scene. It holds the encoded bytes of its image until decode(), then the texels.
+/// A texture of a scene. Holds the encoded bytes of its image until decode(), then the texels.
 class Texture {
  public:
   enum class Encoding { linear, srgb };
@@ -26,20 +26,20 @@ class Texture {
   Texture(std::string label, std::vector<std::uint8_t> encoded, Encoding encoding, Wrap wrap_s,
           Wrap wrap_t);
 
-  /// Decodes the image and frees its encoded bytes; does nothing if it is decoded already. Not
-  /// thread-safe on one texture. The scene calls it before rendering, for the textures that the
-  /// integrator needs. Texels have 8 bits a channel (16-bit PNGs are rounded), grey becomes RGB,
-  /// missing alpha becomes 1, and alpha is not multiplied into the colour. Throws SceneError if the
-  /// image is not a PNG or JPEG, is corrupt, or is larger than 16384 x 16384.
+  /// Decodes the image and frees its encoded bytes; no effect if it is decoded. Not thread-safe on
+  /// one texture. The scene calls it before rendering, for the textures that the integrator needs.
+  /// Texels have 8 bits per channel (16-bit PNGs are rounded), grey becomes RGB, missing alpha
+  /// becomes 1, and alpha is not multiplied into the colour. Throws SceneError if the image is not
+  /// a PNG or JPEG, is corrupt, or is larger than 16384 x 16384.
   void decode();
-  /// The number of texels; before decode() by the header of the image. Throws SceneError.
+  /// The number of texels; before decode(), from the image's header. Throws SceneError.
   std::uint64_t texels() const;
   bool decoded() const { return !texels_.empty(); }
   const std::string& label() const { return label_; }
-  std::size_t bytes() const { return texels_.size(); }  ///< of decoded memory
+  std::size_t bytes() const { return texels_.size(); }  ///< decoded memory
 
   /// Bilinear in linear light; (0, 0) is the upper left corner of the image, as in glTF. Any `uv`
-  /// is safe: where it is not finite, the texel at that corner. Must be decoded.
+  /// is safe: a non-finite one gives the texel at that corner. Must be decoded.
   Rgba lookup(const V2f& uv) const;
   /// Prefetches the texels that lookup(uv) reads.
   void prefetch(const V2f& uv) const;

@@ -49,7 +49,7 @@ Rgba8Image decode_plain(ImageFormat format, const std::vector<std::uint8_t>& pla
   }
 }
 
-/// Told by its magic bytes.
+/// The format by the magic bytes.
 ImageFormat encoded_format(std::span<const std::uint8_t> encoded, const std::string& label) {
   constexpr std::array<std::uint8_t, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   constexpr std::array<std::uint8_t, 3> jpeg{0xFF, 0xD8, 0xFF};

@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// The first level of sums. Below it a level would take a fourth of the texels' own number, and
+/// The first level of sums. A lower level would have at least a fourth of the number of texels; the
 /// texels are read instead.
 constexpr int first_shift = 2;
 
@@ -20,8 +20,8 @@ struct Axis {
   Texture::Wrap wrap;
   int shift;  // cells have 2^shift texels
 
-  /// Calls `f(cell, from, to)` for the cells that the interval [low, high] of unwrapped texel
-  /// coordinates reaches, with the part of the interval that each takes.
+  /// Calls `f(cell, from, to)` for each cell that overlaps the interval [low, high] of unwrapped
+  /// texel coordinates, with the overlap.
   template <class F>
   void for_each_cell(double low, double high, F&& f) const {
     if (wrap == Texture::Wrap::clamp) {
@@ -43,7 +43,7 @@ struct Axis {
   }
 
  private:
-  /// `endless`: the first and the last cell go on for ever.
+  /// `endless`: the first and the last cell extend to infinity.
   template <class F>
   void cells_between(double low, double high, bool endless, F&& f) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ struct Interval {
     low = std::min(low, x);
     high = std::max(high, x);
   }
-  /// As far as it is on the texture, where that does not go on.
+  /// Its length on the texture, clipped if the texture does not repeat.
   double length_on(int size, Texture::Wrap wrap) const {
     if (wrap != Texture::Wrap::clamp) return high - low;
     return std::clamp(high, 0.0, double(size)) - std::clamp(low, 0.0, double(size));
@@ -77,7 +77,7 @@ struct Interval {
 
 using Corners = std::array<Imath::V2d, 3>;
 
-/// The x of the part of a triangle with y in [low, high].
+/// The x interval of the part of a triangle with y in [low, high].
 Interval across(const Corners& corners, double low, double high) {
   Interval x;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -133,8 +133,9 @@ V3d TextureMeans::whole() const { return mean(&levels_.back(), {0, 0}); }
 
 TextureMeans::Mean TextureMeans::over(const std::array<V2f, 3>& uv, float largest) const {
   const V2i size = texture_->size();
-  // A lookup reads the texels whose centres are within 1 of it in both axes, so the triangle, wider
-  // by a half on all sides, covers them; and by what rounding moves coordinates, a few times 2^-24.
+  // A lookup reads the texels whose centres are within 1 of it in both axes, so they cover the
+  // triangle widened by a half on all sides, and by the rounding error of coordinates, a few times
+  // 2^-24.
   constexpr double few_roundings = 0x1p-20;
   const double margin = 0.5 + few_roundings * double(largest) * std::max(size.x, size.y);
   Corners corners;
@@ -152,9 +153,9 @@ TextureMeans::Mean TextureMeans::over(const std::array<V2f, 3>& uv, float larges
   const double height = y.length_on(size.y, texture_->wrap_t()) + 2 * margin;
   const Imath::V2d e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
   const double area = std::min(std::abs(e1.x * e2.y - e1.y * e2.x) / 2, width * height);
-  // A row of cells that are a wide and b high, on average, is reached on the length of its part of
-  // the area over b, and of what the two edges that cross it move by; all edges of one side
-  // together move by the width at most. Rows begin and end in the midst of cells.
+  // A bound on the number of cells, a by b texels on average, that the widened triangle overlaps:
+  // its area; the horizontal extents of the two edges in each row, on each side at most the width
+  // over all rows; and in each row the margins and the cells at both ends.
   const auto cells = [&](int shift) {
     const double a = double(size.x) / cells_along(size.x, shift);
     const double b = double(size.y) / cells_along(size.y, shift);

@@ -7,9 +7,9 @@
 
 namespace lacuna {
 
-/// Means of a texture's colours over triangles of texture coordinates, for estimates of the power
-/// of emitters: a pyramid of sums over squares of texels, that is built once for a texture, and of
-/// which a triangle reads the level at which it covers a few hundred squares.
+/// Means of a texture's colours over triangles of texture coordinates, to estimate the power of
+/// emitters. A pyramid of sums over squares of texels, built once per texture; a triangle reads the
+/// level at which it covers a few hundred squares.
 class TextureMeans {
  public:
   /// Keeps a pointer to `texture`, which must be decoded.
@@ -17,11 +17,12 @@ class TextureMeans {
 
   struct Mean {
     V3d rgb{0, 0, 0};  ///< linear
-    int cells = 0;     ///< how many texels or sums were read: at most `most_cells`
+    int cells = 0;     ///< texels or sums read: at most `most_cells`
   };
-  /// An estimate of the mean of Texture::lookup() over the triangle with the corners `uv`, in any
-  /// place and of any size. A channel is 0 only if lookup() is 0 everywhere on the triangle.
-  /// `largest`: the largest number that took part in computing `uv`, for their rounding errors.
+  /// An estimate of the mean of Texture::lookup() over the triangle with the corners `uv`, which
+  /// may be anywhere and of any size. A channel is 0 only if lookup() is 0 everywhere on the
+  /// triangle. `largest`: the largest number used to compute `uv`, which bounds their rounding
+  /// errors.
   Mean over(const std::array<V2f, 3>& uv, float largest) const;
   /// The mean over all texels.
   V3d whole() const;
@@ -29,7 +30,7 @@ class TextureMeans {
   static constexpr int most_cells = 512;
 
  private:
-  /// Sums of the texels of squares of 2^shift x 2^shift texels, cut off at the image's border.
+  /// Sums over squares of 2^shift x 2^shift texels, clipped at the image's border.
   struct Level {
     int shift, width, height;
     std::vector<Rgb> sums;
@@ -37,7 +38,7 @@ class TextureMeans {
   struct Cell {
     int x, y;
   };
-  /// The mean of a cell; null: of a texel.
+  /// The mean of a cell of `level`; null: the value of a texel.
   V3d mean(const Level* level, Cell cell) const;
 
   const Texture* texture_;

@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-// Tags (TIFF 6.0): all that a picture is made of, and no more.
+// Tags (TIFF 6.0): only those that define a picture.
 enum TiffTag : std::uint16_t {
   image_width = 256,
   image_length = 257,
@@ -38,9 +38,9 @@ constexpr std::array<std::uint16_t, 18> needed_tags{
 constexpr std::size_t entry_bytes = 12;
 constexpr std::uint32_t type_short = 3, type_long = 4;
 constexpr std::uint32_t format_float = 3;
-/// Plain, LZW, Deflate under its two numbers, PackBits.
+/// None, LZW, Deflate by two numbers, PackBits.
 constexpr std::array<std::uint32_t, 5> compressions{1, 5, 8, 32946, 32773};
-/// No compression above makes more bytes of one.
+/// An upper bound of the expansion of all of these, bytes per byte.
 constexpr std::uint64_t largest_tiff_expansion = 4096;
 
 class TiffGuard {
@@ -75,7 +75,7 @@ class TiffGuard {
     }
   }
 
-  /// Reads the first directory, and leaves in it the needed tags alone: not even another one.
+  /// Reads the first directory, reduced to the needed tags and without a link to the next one.
   void read_directory() {
     const std::size_t begin = number(4, 4);
     const std::uint32_t entries = number(begin, 2);
@@ -139,7 +139,7 @@ class TiffGuard {
     if (!floats || (bits_ != 16 && bits_ != 32) ||
         std::any_of(depths.begin(), depths.end(), [&](std::uint32_t d) { return d != bits_; })) {
       in_.fail("has " + std::to_string(bits_) + "-bit " + (floats ? "floats" : "integers") +
-               "; allowed: 16- and 32-bit floats, which hold light");
+               "; allowed: 16- and 32-bit floats");
     }
     const std::uint32_t coding = one(compression, 1), colours = one(photometric, 0);
     if (std::find(compressions.begin(), compressions.end(), coding) == compressions.end()) {
@@ -152,7 +152,7 @@ class TiffGuard {
     }
   }
 
-  /// Strips or tiles: as many as the size asks for, each inside the file.
+  /// Checks strips or tiles: the number that follows from the size, each inside the file.
   void check_data() const {
     const bool tiled = tags_.contains(tile_width);
     const std::uint64_t across = tiled ? all(tile_width).front() : width_;
@@ -170,7 +170,7 @@ class TiffGuard {
     const Values& lengths = all(tiled ? tile_bytes : strip_bytes);
     if (offsets.size() != blocks || lengths.size() != blocks) {
       in_.fail("is corrupt: it has " + std::to_string(offsets.size()) +
-               " blocks, its size asks for " + std::to_string(blocks));
+               " blocks, its size requires " + std::to_string(blocks));
     }
     std::uint64_t stored = 0;
     for (std::size_t i = 0; i < blocks; ++i) {

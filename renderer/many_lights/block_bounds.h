@@ -6,7 +6,7 @@
 namespace lacuna {
 
 /// Bounds of the positions and normals of a block's lights, for culling: in a closed scene most
-/// blocks face away from a shading point, or lie behind it, as a whole.
+/// blocks as a whole face away from a shading point or lie behind it.
 class BlockBounds {
  public:
   BlockBounds() = default;
@@ -22,19 +22,19 @@ class BlockBounds {
     }
   }
 
-  /// For eight points `x`: every light of the block lies behind the plane through x with normal
-  /// `n`, by more than the rounding error.
+  /// For eight points `x`: whether every light of the block lies behind the plane through x with
+  /// normal `n`, by more than the rounding error.
   Mask8 behind(const Float8x3& x, const Float8x3& n) const {
     return below_zero({low_.x - x.x, low_.y - x.y, low_.z - x.z},
                       {high_.x - x.x, high_.y - x.y, high_.z - x.z}, n, n);
   }
-  /// For eight points `x`: every light of the block faces away from x.
+  /// For eight points `x`: whether every light of the block faces away from x.
   Mask8 facing_away(const Float8x3& x) const {
     return below_zero({x.x - low_.x, x.y - low_.y, x.z - low_.z},
                       {x.x - high_.x, x.y - high_.y, x.z - high_.z}, all(least_), all(most_));
   }
 
-  /// For eight points `x`: every light of the block is further than `distance` from x.
+  /// For eight points `x`: whether every light of the block is further than `distance` from x.
   Mask8 further_than(float distance, const Float8x3& x) const {
     const auto off = [](Float8 p, float low, float high) {
       return max(Float8(0.0F), max(Float8(low) - p, p - Float8(high)));
@@ -48,7 +48,7 @@ class BlockBounds {
   static constexpr float rounding = 1e-6F;  // a few units in the last place of the sums
 
   static Float8x3 all(const V3f& v) { return {v.x, v.y, v.z}; }
-  /// Whether p . n < 0 for all p between `a` and `b` and n between `from` and `to`, by component.
+  /// Whether p . n < 0 for all p between `a` and `b` and n between `from` and `to`, per component.
   static Mask8 below_zero(const Float8x3& a, const Float8x3& b, const Float8x3& from,
                           const Float8x3& to) {
     Float8 highest = 0.0F;

@@ -11,11 +11,12 @@ namespace {
 
 constexpr int part = EyeBatch::size;  // pixels
 
-/// Of the rank of the farthest neighbour: a cache point counts at most a thousand times as much as
-/// that, also where it is the shading point itself and its rank 0.
+/// Lower bound of a rank, relative to the farthest neighbour: the nearest cache point gets at most
+/// a thousand times the weight of the farthest, even if it coincides with the shading point (rank
+/// 0).
 constexpr float least_rank = 1e-3F;
 
-/// Eight bits as eight floats.
+/// The bits of a byte as eight floats.
 struct ByteTable {
   alignas(32) std::array<std::array<float, 8>, 256> of;
   ByteTable() {
@@ -27,7 +28,8 @@ struct ByteTable {
 };
 const ByteTable bytes;
 
-/// Of the tests of the gathered lights: what cache points may take where lights are sampled.
+/// If lights are sampled: the largest number of cache point tests, relative to those of gathered
+/// lights.
 constexpr double largest_share = 0.25;
 
 }  // namespace
@@ -83,13 +85,13 @@ Counters CachePoints::build(const LightPass& pass) {
   scales_.assign(pixels.size(), 0.0);
   blocks_ = pass.terms.lights().blocks();
   if (keep_ == Keep::visibilities) {
-    require_free(double(pixels.size()) * double(blocks_) * sizeof(Seen), [&] {
+    require_free(double(pixels.size()) * double(blocks_) * sizeof(VisibilityBits), [&] {
       return fmt::format(
           "many_lights: the visibility of {} lights at {} cache points; lower "
           "cache_points or light_paths",
           pass.terms.lights().size(), pixels.size());
     });
-    seen_.assign(pixels.size() * blocks_, {});
+    visibility_.assign(pixels.size() * blocks_, {});
   }
   constexpr std::size_t together = 4;
   const int parts = static_cast<int>((pixels.size() + together - 1) / together);
@@ -114,25 +116,25 @@ Counters CachePoints::build(const LightPass& pass) {
 
 void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPoint& at,
                        Counters& counters) {
-  struct Lit {
+  struct Contribution {
     std::size_t block;
     int light;
     float value;
   };
   const VplSet& lights = pass.terms.lights();
-  ShadowQueue<Lit> queue;
+  ShadowQueue<Contribution> queue;
   Terms terms;
   PointLanes here;
   here.add(at);
   double sum = 0;
   double sum2 = 0;
   const auto flush = [&] {
-    queue.flush(pass.context.scene.rays(), counters, [&](const Lit& s) {
+    queue.flush(pass.context.scene.rays(), counters, [&](const Contribution& s) {
       const double t = double(s.value) / double(at.scale);
       sum += t;
       sum2 += t * t;
       if (keep_ == Keep::visibilities) {
-        seen_[point * blocks_ + s.block].visible |= std::uint64_t{1} << s.light;
+        visibility_[point * blocks_ + s.block].visible |= std::uint64_t{1} << s.light;
       }
     });
   };
@@ -147,7 +149,7 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
     }
     const std::uint64_t dark = all_ ? lights.mask(b) & ~lit : 0;
     for_each_bit(dark, [&](int i) { queue.add(pass.terms.ray_from_side(at, b, i), {b, i, 0}); });
-    if (keep_ == Keep::visibilities) seen_[point * blocks_ + b].known = lit | dark;
+    if (keep_ == Keep::visibilities) visibility_[point * blocks_ + b].tested = lit | dark;
     if (b % 16 == 15) flush();
     if (b % 1024 == 1023 && pass.context.stop()) throw IterationStopped{};
   }
@@ -190,21 +192,21 @@ float CachePoints::deviation(const ShadingPoint& at, const Near& near) const {
 }
 
 std::uint64_t CachePoints::expected(const Near& near, std::size_t block, Lanes& q) const {
-  std::uint64_t any_known = 0;
+  std::uint64_t any_tested = 0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
-    any_known |= seen_[near.index[j] * blocks_ + block].known;
+    any_tested |= visibility_[near.index[j] * blocks_ + block].tested;
   }
   for (int k = 0; k < Lanes::groups; ++k) {
-    Float8 visible, known;
+    Float8 visible, tested;
     for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
-      const Seen& seen = seen_[near.index[j] * blocks_ + block];
+      const VisibilityBits& stored = visibility_[near.index[j] * blocks_ + block];
       const Float8 weight = near.weight[j];
-      visible = visible + weight * Float8::load(bytes.of[seen.visible >> (8 * k) & 0xff].data());
-      known = known + weight * Float8::load(bytes.of[seen.known >> (8 * k) & 0xff].data());
+      visible = visible + weight * Float8::load(bytes.of[stored.visible >> (8 * k) & 0xff].data());
+      tested = tested + weight * Float8::load(bytes.of[stored.tested >> (8 * k) & 0xff].data());
     }
-    q.set(k, keep_where(known > 0, visible / known));
+    q.set(k, keep_where(tested > 0, visible / tested));
   }
-  return any_known;
+  return any_tested;
 }
 
 }  // namespace lacuna

@@ -14,36 +14,37 @@ struct LightPass {
   int max_depth;      ///< edges of an eye path
   float least_alpha;  ///< Bsdf::is_vpl_receiver()
   BlockRange lights = {};
-  std::size_t sampled = ~std::size_t{0};  ///< lights gathered at a shading point, if not all
+  std::size_t sampled = ~std::size_t{0};  ///< lights gathered per shading point, if not all
 
   std::size_t gathered() const { return std::min(sampled, terms.lights().size()); }
 };
 
-/// n_d / N (Nabata et al., eq. 13): eye rays per gathered light, with one eye ray for each shading
+/// n_d / N (Nabata et al., eq. 13): eye rays per gathered light, with one eye ray per shading
 /// point.
 inline float eye_rays_per_light(const LightPass& pass) {
   return 1 / static_cast<float>(std::max<std::size_t>(1, pass.gathered()));
 }
 
-/// Shading points at which virtual lights are tested: they store one bit of visibility for each
-/// light, and the variance of the lights' contributions (Nabata et al., 3.1). They are new in each
-/// iteration, like the lights. Where only some lights are gathered at a shading point, there are
-/// fewer cache points, so that their tests are at most a quarter of those of the gathered lights.
+/// Shading points at which the visibility of virtual lights is tested: they store one bit of
+/// visibility per light, and the variance of the lights' contributions (Nabata et al., 3.1). They
+/// are new in each iteration, like the lights. If only some lights are gathered per shading point,
+/// the number of cache points is limited so that their tests are at most a quarter of those of the
+/// gathered lights.
 class CachePoints {
  public:
   static constexpr int max_neighbours = 8;
 
-  /// What is stored: the variances alone, or the visibility bits too.
+  /// The stored data: only variances, or also the visibility bits.
   enum class Keep { variances, visibilities };
 
-  /// `tested`: matters with Keep::visibilities only.
+  /// `tested`: used with Keep::visibilities only.
   CachePoints(int points, int neighbours, Keep keep, CacheLights tested = CacheLights::lit)
       : wanted_(static_cast<std::size_t>(points)),
         neighbours_(neighbours),
         keep_(keep),
         all_(keep == Keep::visibilities && tested == CacheLights::all) {}
 
-  /// Chooses the points and tests the lights at them. Throws MemoryLimitError if there is no memory
+  /// Selects the points and tests the lights at them. Throws MemoryLimitError if there is no memory
   /// for the bits.
   Counters build(const LightPass& pass);
 
@@ -51,19 +52,18 @@ class CachePoints {
   struct Near {
     int n = 0;
     std::array<std::uint32_t, max_neighbours> index{};
-    std::array<float, max_neighbours> weight{};  ///< add up to 1
+    std::array<float, max_neighbours> weight{};  ///< sum is 1
   };
   Near near(const ShadingPoint& at) const;
 
-  /// Standard deviation of the lights' contributions (luminance, with visibility) to `at`; 0 where
+  /// Standard deviation of the lights' contributions (luminance, with visibility) to `at`; 0 if
   /// there is no cache point.
   float deviation(const ShadingPoint& at, const Near& near) const;
-  /// Its root mean square over the picture.
+  /// The root mean square of the deviation over the picture.
   float deviation() const { return static_cast<float>(std::sqrt(picture_variance_)); }
-  /// q: the weighted mean of the nearest points' visibility of each light of `block`, over those at
-  /// which it was tested: with CacheLights::lit, those at which the light has a contribution.
-  /// Returns a mask of the lights that at least one point knows; q of the others is 0. Requires
-  /// Keep::visibilities.
+  /// q: the weighted mean visibility of each light of `block` over the nearest points at which it
+  /// was tested: with CacheLights::lit, those at which the light has a contribution. Returns a mask
+  /// of the lights tested at some point; q of the others is 0. Requires Keep::visibilities.
   std::uint64_t expected(const Near& near, std::size_t block, Lanes& q) const;
 
   std::size_t size() const { return variances_.size(); }
@@ -73,9 +73,9 @@ class CachePoints {
   }
 
  private:
-  /// The largest number of cache points for a picture with so many shading points.
+  /// The largest number of cache points for a picture with this number of shading points.
   std::size_t affordable(const LightPass& pass, std::size_t shading_points) const;
-  /// Chooses the pixels of the cache points and sets weights_.
+  /// Selects the pixels of the cache points and sets weights_.
   std::vector<std::uint32_t> choose(const LightPass& pass, Counters& counters);
   void fill(const LightPass& pass, std::size_t point, const ShadingPoint& at, Counters& counters);
 
@@ -87,14 +87,14 @@ class CachePoints {
   std::vector<SurfacePoint> points_;
   std::vector<double> variances_;  // of contributions over ShadingPoint::scale
   std::vector<double> scales_;     // ShadingPoint::scale
-  std::vector<double> weights_;    // share of the picture's shading points in its cluster
+  std::vector<double> weights_;    // fraction of the picture's shading points in its cluster
   double picture_variance_ = 0;
   std::size_t blocks_ = 0;
-  // For each point and block: which lights were tested, and which of them are visible.
-  struct Seen {
-    std::uint64_t known = 0, visible = 0;
+  // For each point and block: which lights were tested, and which of these are visible.
+  struct VisibilityBits {
+    std::uint64_t tested = 0, visible = 0;
   };
-  std::vector<Seen> seen_;
+  std::vector<VisibilityBits> visibility_;
 };
 
 }  // namespace lacuna

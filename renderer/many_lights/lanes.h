@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// One float for each of sixty-four lights.
+/// One float for each of 64 lights.
 struct alignas(32) Lanes {
   static constexpr int size = 64;
   std::array<float, size> v{};

@@ -13,7 +13,7 @@ LightDraw::LightDraw(const VplContributions& terms, const RandomLightsSettings& 
   int edges = 0;
   for (std::size_t b = 0; b < lights.blocks(); ++b) {
     const bool diffuse = lights.diffuse(b) != nullptr;
-    bool starts = stretches_.empty();  // or it goes on, with lights of one kind and length of path
+    bool starts = stretches_.empty();  // a stretch has one kind of lights and one path length
     for (; b >= lights.blocks(edges); ++edges) starts = true;
     if (!starts) {
       const Stretch& s = stretches_.back();
@@ -30,11 +30,11 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
                                               const IterationContext& context) {
   PointLanes lanes;
   for (const ShadingPoint& p : points) lanes.add(p);
-  std::vector<std::vector<std::size_t>> left(points.size());
+  std::vector<std::vector<std::size_t>> candidates(points.size());
   for (std::size_t s = 0; s < stretches_.size(); ++s) {
-    for_each_bit(may_shine(stretches_[s], lanes), [&](int bit) {
+    for_each_bit(may_illuminate(stretches_[s], lanes), [&](int bit) {
       const auto i = static_cast<std::size_t>(bit);
-      if (stretches_[s].first < terms_.lights().blocks(points[i].edges)) left[i].push_back(s);
+      if (stretches_[s].first < terms_.lights().blocks(points[i].edges)) candidates[i].push_back(s);
     });
   }
   std::vector<Drawn> drawn;
@@ -42,8 +42,8 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
   for (std::size_t i = 0; i < points.size(); ++i) {
     pairs += before_[terms_.lights().blocks(points[i].edges)];
     kept +=
-        draw_for(points[i].vertex->surface.x, i, left[i],
-                 {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather}, drawn);
+        sample_for(points[i].vertex->surface.x, i, candidates[i],
+                   {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather}, drawn);
   }
   pairs_ += pairs;
   left_ += kept;
@@ -53,12 +53,12 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
   return drawn;
 }
 
-std::uint64_t LightDraw::may_shine(const Stretch& s, const PointLanes& points) const {
-  std::uint64_t left = points.all();
-  if (!s.bounded) return left;
-  if (settings_.cull) left &= points.may_be_lit(s.bounds);
-  if (settings_.cutoff > 0) left &= points.may_be_near(s.bounds, cutoff());
-  return left;
+std::uint64_t LightDraw::may_illuminate(const Stretch& s, const PointLanes& points) const {
+  std::uint64_t candidates = points.all();
+  if (!s.bounded) return candidates;
+  if (settings_.cull) candidates &= points.may_be_lit(s.bounds);
+  if (settings_.cutoff > 0) candidates &= points.may_be_near(s.bounds, cutoff());
+  return candidates;
 }
 
 bool LightDraw::is_near(const V3f& x, std::size_t block, int i) const {
@@ -67,9 +67,9 @@ bool LightDraw::is_near(const V3f& x, std::size_t block, int i) const {
   return light.infinite || (light.x - x).length2() <= cutoff() * cutoff();
 }
 
-std::uint64_t LightDraw::draw_for(const V3f& x, std::size_t point,
-                                  std::span<const std::size_t> stretches, Rng rng,
-                                  std::vector<Drawn>& drawn) const {
+std::uint64_t LightDraw::sample_for(const V3f& x, std::size_t point,
+                                    std::span<const std::size_t> stretches, Rng rng,
+                                    std::vector<Drawn>& drawn) const {
   std::uint64_t total = 0;
   for (const std::size_t s : stretches) total += lights_of(s);
   // Steps are at least 1, so no light is sampled twice.
@@ -77,8 +77,8 @@ std::uint64_t LightDraw::draw_for(const V3f& x, std::size_t point,
   const double u = (double(rng.next_u32()) + 0.5) * 0x1p-32 * step;
   const auto draws = std::min(total, static_cast<std::uint64_t>(settings_.lights));
   std::size_t at = 0;
-  std::uint64_t passed = 0;              // lights of the stretches before that
-  const std::size_t own = drawn.size();  // the first of this point
+  std::uint64_t passed = 0;              // number of lights of the preceding stretches
+  const std::size_t own = drawn.size();  // start of this point's entries
   for (std::uint64_t k = 0; k < draws; ++k) {
     const auto index =
         std::min(static_cast<std::uint64_t>(u + static_cast<double>(k) * step), total - 1);

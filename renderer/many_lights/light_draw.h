@@ -9,30 +9,30 @@
 namespace lacuna {
 
 /// Samples a few virtual lights for each shading point (Kol et al. 2018, 5.1). All lights that may
-/// illuminate the point have the same probability; contributions are divided by it, so the estimate
-/// is unbiased.
+/// illuminate the point have equal probability; contributions are divided by it, so the estimate is
+/// unbiased.
 ///
-/// Blocks hold lights of similar position and normal. A stretch of consecutive blocks with bounds
-/// takes the role of a coarse node in the paper's hierarchy. The lights of the stretches that are
-/// not culled are sampled at equal steps from a random start (systematic sampling).
+/// Blocks contain lights of similar position and normal. A stretch of consecutive blocks with
+/// common bounds corresponds to a coarse node in the paper's hierarchy. The lights of the stretches
+/// that are not culled are sampled at equal steps from a random start (systematic sampling).
 class LightDraw {
  public:
-  /// `terms` must outlive it. The lights are divided into about `most_stretches` stretches.
+  /// `terms` must outlive this. The lights are divided into about `most_stretches` stretches.
   LightDraw(const VplContributions& terms, const RandomLightsSettings& settings,
             std::size_t most_stretches = 1024);
 
-  /// The sampled lights of one block for one shading point.
+  /// The lights of one block sampled for one shading point.
   struct Drawn {
     std::size_t block;
     std::size_t point;     ///< index of the shading point
     std::uint64_t lights;  ///< mask
     float weight;          ///< 1 / probability
   };
-  /// Samples lights for at most Lanes::size `points`; the result is ordered by block, then by
-  /// point. Counts pairs for culled(). Several threads may call it at once.
+  /// Samples lights for at most Lanes::size `points`; the result is sorted by block, then by point.
+  /// Counts pairs for culled(). Thread-safe.
   std::vector<Drawn> draw(std::span<const ShadingPoint> points, const IterationContext& context);
 
-  /// Share of all pairs of a point and a light that draw() has culled so far.
+  /// Fraction of all pairs of a point and a light that draw() has culled so far.
   double culled() const;
 
  private:
@@ -42,12 +42,12 @@ class LightDraw {
     BlockBounds bounds;
   };
   /// A mask: bit i is set if a light of the stretch may illuminate point i.
-  std::uint64_t may_shine(const Stretch& s, const PointLanes& points) const;
+  std::uint64_t may_illuminate(const Stretch& s, const PointLanes& points) const;
   bool is_near(const V3f& x, std::size_t block, int i) const;
   float cutoff() const { return static_cast<float>(settings_.cutoff); }
   /// Samples lights of the given stretches for the point at x; returns the number of their lights.
-  std::uint64_t draw_for(const V3f& x, std::size_t point, std::span<const std::size_t> stretches,
-                         Rng rng, std::vector<Drawn>& drawn) const;
+  std::uint64_t sample_for(const V3f& x, std::size_t point, std::span<const std::size_t> stretches,
+                           Rng rng, std::vector<Drawn>& drawn) const;
   std::uint64_t lights_of(std::size_t stretch) const {
     return before_[stretches_[stretch].end] - before_[stretches_[stretch].first];
   }

@@ -16,7 +16,7 @@ void LightFilter::add(const ShadingPoint& point, const V3d& light) {
   p.n = point.vertex->side();
   p.reflected = point.vertex->throughput * point.vertex->bsdf->albedo();
   for (int k = 0; k < 3; ++k) {
-    // A channel of zero mean reflectance is hardly reflected at all.
+    // Skip a channel whose mean reflectance is zero: it reflects hardly any light.
     p.light[k] += p.reflected[k] > 0 ? light[k] / double(p.reflected[k]) : 0;
   }
 }

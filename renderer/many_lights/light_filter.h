@@ -9,16 +9,16 @@
 namespace lacuna {
 
 /// Averages the light of the virtual lights over neighbouring pixels with similar surfaces
-/// (cross-bilateral filter; Kol et al. 2018, 5.1). It is divided by the surface's reflectance
-/// first, so that textures stay sharp.
+/// (cross-bilateral filter; Kol et al. 2018, 5.1). The light is first divided by the surface's
+/// reflectance, so that textures stay sharp.
 class LightFilter {
  public:
   LightFilter(const Image& image, const RandomLightsSettings& settings);
 
-  /// Adds the light of some lights to the pixel of `point`, which has one shading point. Several
-  /// threads may add to different pixels.
+  /// Adds light to the pixel of `point`, the only shading point of the pixel. Different pixels may
+  /// be changed by several threads at once.
   void add(const ShadingPoint& point, const V3d& light);
-  /// The filtered light of a pixel; 0 without a shading point.
+  /// The filtered light of a pixel; 0 if it has no shading point.
   V3d at(V2i pixel) const;
 
  private:

@@ -14,15 +14,15 @@ struct LightSum {
   std::uint64_t tests = 0;  ///< lights tested by a shadow ray
 };
 
-/// Which virtual lights are gathered.
+/// The virtual lights to gather.
 struct GatheredLights {
   LightDraw* draw = nullptr;  ///< samples them; null: all
   BlockRange range = {};      ///< only those of these blocks
 };
 
 /// Sums the contributions of all virtual lights, or of the sampled ones, to the shading points of a
-/// few pixels. The outer loop is over lights and the inner one over points, so that a block of
-/// lights is read from memory once for all points.
+/// few pixels. The outer loop is over lights and the inner one over points, so a block of lights is
+/// read from memory once for all points.
 template <class Visibility>
 class LightGather {
  public:
@@ -48,22 +48,22 @@ class LightGather {
   }
 
  private:
-  /// The contribution of a light, pending its shadow ray.
-  struct Lit {
+  /// The contribution of a light that a shadow ray must test.
+  struct PendingContribution {
     Rgb value;
     std::uint32_t point;
   };
   struct Test {
     Ray ray;
-    Lit lit;
+    PendingContribution contribution;
   };
-  static constexpr std::size_t most_waiting = 2048;  // rays; they fit the second-level cache
+  static constexpr std::size_t largest_queue = 2048;  // rays, which fit the second-level cache
   static constexpr std::size_t blocks_between_stops = 64;
 
   void gather_all(std::span<const ShadingPoint> points, std::span<LightSum> sums,
                   Counters& counters) {
     PointLanes lanes;
-    std::array<std::size_t, Lanes::size> ends;  // of the blocks that light each point
+    std::array<std::size_t, Lanes::size> ends;  // end of the blocks whose lights reach each point
     std::size_t blocks = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       lanes.add(points[i]);
@@ -92,7 +92,7 @@ class LightGather {
 
   void end_block(std::span<LightSum> sums, Counters& counters) {
     queue_tests();
-    if (queue_.size() >= most_waiting) flush(sums, counters);
+    if (queue_.size() >= largest_queue) flush(sums, counters);
     if (++blocks_ % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
   }
 
@@ -120,14 +120,14 @@ class LightGather {
   /// Queues the shadow rays by light: rays from one light to neighbouring points are coherent.
   void queue_tests() {
     for (auto& of_light : tests_) {
-      for (const Test& t : of_light) queue_.add(t.ray, t.lit);
+      for (const Test& t : of_light) queue_.add(t.ray, t.contribution);
       of_light.clear();
     }
   }
 
   void flush(std::span<LightSum> sums, Counters& counters) {
     queue_.flush(context_.scene.rays(), counters,
-                 [&](const Lit& l) { sums[l.point].value += V3d(l.value); });
+                 [&](const PendingContribution& l) { sums[l.point].value += V3d(l.value); });
   }
 
   const IterationContext& context_;
@@ -135,10 +135,10 @@ class LightGather {
   const Visibility& visibility_;
   LightDraw* draw_;
   BlockRange range_;
-  std::size_t blocks_ = 0;                            // done
+  std::size_t blocks_ = 0;                            // processed
   std::vector<typename Visibility::At> states_;       // of each point
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
-  ShadowQueue<Lit> queue_;
+  ShadowQueue<PendingContribution> queue_;
   Terms term_;
   VisibilityEstimate decision_;
 };

@@ -5,8 +5,8 @@
 
 namespace lacuna {
 
-/// Finds the shading points of an iteration's pixels: traces eye paths to the first vertex that
-/// Bsdf::is_vpl_receiver() accepts.
+/// Finds the shading points of an iteration's pixels: traces eye paths to the first vertex for
+/// which Bsdf::is_vpl_receiver() holds.
 class ShadingPoints {
  public:
   ShadingPoints(const IterationContext& context, int max_depth, float least_alpha,
@@ -19,8 +19,8 @@ class ShadingPoints {
               {.max_depth = max_depth, .last_scatters = true, .roulette_depth = max_depth + 1},
               counters) {}
 
-  /// Calls `use(vertex, depth, pixel)` for each of at most EyeBatch::size `pixels` that has a
-  /// shading point less than max_depth edges from the eye. The vertices live until the next call.
+  /// Calls `use(vertex, depth, pixel)` for each of at most EyeBatch::size `pixels` with a shading
+  /// point less than max_depth edges from the eye. The vertices are valid until the next call.
   template <class Use>
   void find(std::span<const std::uint32_t> pixels, Use&& use) {
     batch_.states.clear();

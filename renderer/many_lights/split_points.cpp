@@ -13,7 +13,7 @@ namespace {
 struct Group {
   std::size_t first, last;
   std::size_t size() const { return last - first; }
-  /// Largest first; among equals the first in the list.
+  /// Orders by size; for equal sizes, the first in the list is the largest.
   bool operator<(const Group& o) const {
     return size() != o.size() ? size() < o.size() : first > o.first;
   }
@@ -30,8 +30,8 @@ class Splitter {
     return std::span(order_).subspan(g.first, g.size());
   }
 
-  /// Moves those below the middle of the longest side to the front and returns where the others
-  /// begin; g.first where all are alike.
+  /// Moves the points below the middle of the longest side to the front and returns the start of
+  /// the others; g.first if all points are identical.
   std::size_t split(const Group& g) {
     std::array<float, 6> low, high;
     low.fill(std::numeric_limits<float>::infinity());
@@ -53,7 +53,8 @@ class Splitter {
     if (!(side(longest) > 0)) return g.first;
     const float middle = low[static_cast<std::size_t>(longest)] + 0.5F * side(longest);
     const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    // Rounding may put the middle on the lowest value; the highest is above it all the same.
+    // Rounding may move the middle to the lowest value, which still splits, or, between adjacent
+    // floats, to the highest: then the group is not split.
     const auto second = std::stable_partition(
         at(g.first), at(g.last), [&](std::uint32_t i) { return coordinate(i, longest) <= middle; });
     const auto border = static_cast<std::size_t>(second - order_.begin());

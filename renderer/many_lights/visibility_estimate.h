@@ -4,12 +4,12 @@
 
 namespace lacuna {
 
-/// The estimated visibility of a block's lights at a shading point: `untested`, plus `gain` where a
-/// shadow ray was traced and was unoccluded. Every visibility strategy fills this.
+/// The estimated visibility of a block's lights at a shading point, computed by a visibility
+/// strategy: `untested`, plus `gain` for each shadow ray that is traced and unoccluded.
 struct VisibilityEstimate {
   std::uint64_t tests = 0;  ///< mask of the lights tested by a shadow ray
   Lanes untested;
-  Lanes gain;  ///< of those in `tests`
+  Lanes gain;  ///< for the lights in `tests`
 };
 
 }  // namespace lacuna

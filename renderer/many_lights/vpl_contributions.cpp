@@ -53,11 +53,11 @@ std::uint64_t PointLanes::may_be_near(const BlockBounds& bounds, float distance)
   });
 }
 
-/// Weights the sampled lights; sets the others of a group of eight to black.
+/// Weights the sampled lights; sets unsampled ones of a group of eight to black.
 void VplContributions::weigh(std::uint64_t of, float weight, Terms& out) {
   for (int k = 0; k < Lanes::groups; ++k) {
     const auto bits = static_cast<unsigned>(of >> (8 * k) & 0xff);
-    if (bits == 0) continue;  // black already
+    if (bits == 0) continue;  // already black
     const Mask8 mask = mask_from_bits(bits);
     for (Lanes* const channel : {&out.r, &out.g, &out.b}) {
       channel->set(k, keep_where(mask, channel->eight(k) * Float8(weight)));
@@ -69,7 +69,7 @@ void VplContributions::diffuse_terms(const ShadingPoint& at, const DiffuseBlock&
                                      std::uint64_t of, Terms& out) const {
   const V3f x = at.vertex->surface.x;
   const V3f ng = at.vertex->surface.ng;
-  // Path tracing cannot hit these lights, so it could not compensate a bound.
+  // Path tracing cannot hit these lights, so it could not compensate for a bound.
   const float bound = from.points ? std::numeric_limits<float>::infinity() : bound_;
   for (int k = 0; k < Lanes::groups; ++k) {
     if ((of >> (8 * k) & 0xff) == 0) {
@@ -103,7 +103,7 @@ Rgb VplContributions::general(const ShadingPoint& at, const GeneralLight& light)
     const Connection c = connect(eye, end);
     if (!c) return Rgb(0, 0, 0);
     const Rgb t = c.contribution * lights_.share();
-    // Path tracing cannot hit these lights, so it could not compensate a bound.
+    // Path tracing cannot hit these lights, so it could not compensate for a bound.
     if (c.infinite || light.delta()) return t;
     const double g = eye.area_factor(c.w) * end.area_factor(c.w) / double(c.distance2);
     return t * bounded_share(static_cast<float>(g), bound_);
@@ -116,7 +116,7 @@ void VplContributions::finish(Terms& out) {
   }
   out.rejected = 0;
   out.lit = positive(out.luminance);
-  // Infinity and NaN propagate to the sum, which is almost always finite.
+  // Infinity and NaN propagate to the sum, which is nearly always finite.
   if (sum(out.luminance) <= std::numeric_limits<float>::max()) return;
   for (int i = 0; i < Lanes::size; ++i) {
     if (is_finite(V3f(out.r[i], out.g[i], out.b[i]))) continue;

@@ -10,8 +10,8 @@ namespace lacuna {
 /// min(g, bound) / g, for a geometric term `g` >= 0.
 inline float bounded_share(float g, float bound) { return g > bound ? bound / g : 1.0F; }
 
-/// A point that gathers virtual lights: the first vertex of an eye path that
-/// Bsdf::is_vpl_receiver() accepts, so it is opaque.
+/// A point that gathers virtual lights: the first vertex of an eye path for which
+/// Bsdf::is_vpl_receiver() holds; it is therefore opaque.
 struct ShadingPoint {
   const Vertex* vertex = nullptr;
   int depth = 0;   ///< edges from the eye
@@ -40,13 +40,14 @@ class PointLanes {
     return size_ < 64 ? (std::uint64_t{1} << size_) - 1 : ~std::uint64_t{0};
   }
   /// A mask of the points that lights within the bounds may illuminate. The lights face away from
-  /// the other points or lie behind them.
+  /// the other points or lie behind their surfaces.
   std::uint64_t may_be_lit(const BlockBounds& bounds) const;
   /// A mask of the points that may be within `distance` of a light within the bounds.
   std::uint64_t may_be_near(const BlockBounds& bounds, float distance) const;
 
  private:
-  /// A mask of the points for which `leaves_out(x, n)`, evaluated for eight at a time, is false.
+  /// A mask of the points for which `leaves_out(x, n)`, evaluated for eight points at a time, is
+  /// false.
   template <class LeavesOut>
   std::uint64_t all_but(LeavesOut&& leaves_out) const;
 
@@ -62,7 +63,7 @@ struct Terms {
   Lanes luminance;
   std::uint64_t lit = 0;       ///< mask of the lights that are not black
   std::uint64_t rejected = 0;  ///< mask of contributions that were not finite and were set to black
-  float weight = 1;            ///< factor of all of them: 1 / the probability of sampling a light
+  float weight = 1;  ///< factor of all contributions: 1 / the probability of sampling a light
 };
 
 /// Evaluates the contributions of virtual lights with a bounded geometric term.
@@ -77,8 +78,8 @@ class VplContributions {
     const float cosines = abs_dot(a.surface.ng, w) * abs_dot(b.surface.ng, w);
     return bounded_share(cosines / (a.surface.x - b.surface.x).length2(), bound_);
   }
-  /// A mask of the points that lights of the block may illuminate. For the others, evaluate() would
-  /// return black and need not be called.
+  /// A mask of the points that lights of the block may illuminate. For other points evaluate()
+  /// returns black and need not be called.
   std::uint64_t may_light(std::size_t block, const PointLanes& points) const {
     return lights_.diffuse(block) == nullptr ? points.all()
                                              : points.may_be_lit(lights_.bounds(block));
@@ -89,9 +90,9 @@ class VplContributions {
                 std::uint64_t of = all_lights, float weight = 1) const;
   /// The shadow ray between light `i` of `block`, which is lit, and `at`.
   Ray ray(const ShadingPoint& at, std::size_t block, int i) const;
-  /// The same for a light that need not be lit: the ray starts on the side of `at` that the eye
-  /// sees and ends on the side of the light that shines. Whatever lies behind the horizon of one of
-  /// the two is hidden by its surface.
+  /// The same for a light that may not be lit: the ray starts on the side of `at` that faces the
+  /// eye and ends on the emitting side of the light. If one lies behind the other's horizon, its
+  /// surface occludes the ray.
   Ray ray_from_side(const ShadingPoint& at, std::size_t block, int i) const;
 
  private:

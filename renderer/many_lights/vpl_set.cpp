@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto block_size = static_cast<std::size_t>(Lanes::size);
 
-/// The axis that `n` is nearest to, and its sign: 0 to 5.
+/// The signed axis nearest to `n`: 0 to 5.
 std::uint64_t main_direction(const V3f& n) {
   int axis = 0;
   for (int k = 1; k < 3; ++k) {
@@ -20,17 +20,17 @@ std::uint64_t main_direction(const V3f& n) {
   return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
 }
 
-/// A part of a list of lights: at most sixty-four of one group.
+/// A part of a list of lights: at most 64 of one group.
 struct Run {
   std::uint32_t group;
   std::vector<std::size_t> lights;
 };
 
-/// Sorts lights by group, by the direction of their normal, and along a space-filling curve; keeps
-/// the order of lights at equal positions.
+/// Sorts lights by group, by the axis of their normal, and along a space-filling curve; lights at
+/// equal positions keep their order.
 template <class Light, class Geometry>
-std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightGroups& groups,
-                                  Geometry&& geometry) {
+std::vector<Run> sorted_runs(const std::vector<Light>& lights, const LightGroups& groups,
+                             Geometry&& geometry) {
   Bounds box;
   for (const Light& l : lights) box.add(geometry(l).x);
   const MortonOrder order(box);
@@ -60,7 +60,7 @@ std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightG
 
 }  // namespace
 
-void VplSet::add(Kept& path, const EmitterPoint& e) const {
+void VplSet::add(StoredLights& path, const EmitterPoint& e) const {
   if (!e.pdf.positive()) return;
   if (e.kind == EmitterPoint::Kind::area && !e.both_sides) {
     path.diffuse.push_back({e.x, e.ng, e.ng, 1, e.emission * (share_ / e.pdf.value), e.offset, 0});
@@ -73,7 +73,7 @@ void VplSet::add(Kept& path, const EmitterPoint& e) const {
   }
 }
 
-void VplSet::add(Kept& path, const Vertex& v, int index) const {
+void VplSet::add(StoredLights& path, const Vertex& v, int index) const {
   if (const std::optional<LambertLit> lit = v.bsdf->lambert_lit(v.wp)) {
     const Rgb rgb = v.throughput * lit->f * share_;
     if (is_black(rgb)) return;
@@ -99,9 +99,9 @@ VplGeometry VplSet::geometry(std::size_t b, int i) const {
 
 void VplSet::arrange(const LightGroups& groups) {
   for (int index = 0; index < choice_.longest; ++index) {
-    const auto all = [&](auto Kept::*kind) {
-      auto found = (Kept{}.*kind);
-      for (const Kept& path : kept_) {
+    const auto all = [&](auto StoredLights::*kind) {
+      auto found = (StoredLights{}.*kind);
+      for (const StoredLights& path : kept_) {
         for (const auto& l : path.*kind) {
           if (l.index == index) found.push_back(l);
         }
@@ -109,9 +109,9 @@ void VplSet::arrange(const LightGroups& groups) {
       size_ += found.size();
       return found;
     };
-    arrange_diffuse(all(&Kept::diffuse), false, groups);
-    arrange_diffuse(all(&Kept::points), true, groups);
-    arrange_general(all(&Kept::general), groups);
+    arrange_diffuse(all(&StoredLights::diffuse), false, groups);
+    arrange_diffuse(all(&StoredLights::points), true, groups);
+    arrange_general(all(&StoredLights::general), groups);
     ends_.push_back(blocks_.size());
   }
   kept_ = {};
@@ -120,7 +120,7 @@ void VplSet::arrange(const LightGroups& groups) {
 void VplSet::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
                              const LightGroups& groups) {
   const auto geometry = [](const Diffuse& l) { return VplGeometry{l.x, l.ng, false}; };
-  for (const Run& run : near_one_another(lights, groups, geometry)) {
+  for (const Run& run : sorted_runs(lights, groups, geometry)) {
     const auto count = static_cast<int>(run.lights.size());
     blocks_.push_back({diffuse_.size(), count, true, run.group});
     DiffuseBlock& block = diffuse_.emplace_back();
@@ -145,7 +145,7 @@ void VplSet::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
 
 void VplSet::arrange_general(const std::vector<GeneralLight>& lights, const LightGroups& groups) {
   const auto geometry = [](const GeneralLight& l) { return l.geometry(); };
-  for (const Run& run : near_one_another(lights, groups, geometry)) {
+  for (const Run& run : sorted_runs(lights, groups, geometry)) {
     blocks_.push_back({general_.size(), static_cast<int>(run.lights.size()), false, run.group});
     for (const std::size_t i : run.lights) general_.push_back(lights[i]);
   }

@@ -12,9 +12,9 @@
 
 namespace lacuna {
 
-/// Sixty-four lights as a structure of arrays: Lambertian surface vertices of light paths and
-/// one-sided emitters, or else point lights. Unused lanes are black. Towards unit `w` with w.g > 0
-/// a light has radiant intensity rgb (w.g) (w.s > 0 ? shading_cosine_ratio : 1).
+/// 64 lights as a structure of arrays: Lambertian surface vertices of light paths and one-sided
+/// emitters, or point lights. Unused lanes are black. In unit direction `w` with w.g > 0 a light
+/// has the radiant intensity rgb (w.g) (w.s > 0 ? shading_cosine_ratio : 1).
 struct DiffuseBlock {
   bool points = false;         ///< point lights: intensity rgb in all directions, normals are 0
   Lanes x, y, z;               ///< position
@@ -32,18 +32,18 @@ struct VplGeometry {
   bool infinite;  ///< at infinity
 };
 
-/// A light of any other kind: a vertex of a light path, or the point on an emitter where it starts.
+/// A light of any other kind: a vertex of a light path, or its start point on an emitter.
 struct GeneralLight {
   std::variant<Vertex, EmitterPoint> at;
   int index;  ///< of the vertex on its path
 
   VplGeometry geometry() const;
-  /// Eye paths cannot hit it.
+  /// Whether eye paths cannot hit it.
   bool delta() const {
     const auto* e = std::get_if<EmitterPoint>(&at);
     return e != nullptr && e->delta();
   }
-  /// Calls `use(endpoint)` with the endpoint of a connecting edge (endpoints.h).
+  /// Calls `use(endpoint)` with the endpoint of a connection edge (endpoints.h).
   template <class Use>
   decltype(auto) with_end(const Guide& guide, Use&& use) const {
     if (const auto* e = std::get_if<EmitterPoint>(&at)) return use(EmitterEndpoint{*e, guide});
@@ -61,16 +61,16 @@ struct BlockRange {
   bool is_first() const { return first == 0; }
 };
 
-/// Assigns a group to each light; the lights of a block belong to one group.
+/// Assigns a group to each light; all lights of a block belong to one group.
 using LightGroups = std::function<std::uint32_t(const VplGeometry&)>;
-/// The group of lights that belong to no other.
+/// The group of lights without a group.
 inline constexpr std::uint32_t no_group = 0xffffffff;
 
-/// The virtual point lights (VPLs) of an iteration, in blocks of sixty-four nearby lights. The
-/// intensity of a light includes the factor 1 / number of light paths.
+/// The virtual point lights (VPLs) of an iteration, in blocks of 64 nearby lights. The intensity of
+/// a light includes the factor 1 / number of light paths.
 class VplSet {
  public:
-  /// Which vertices of light paths become lights.
+  /// Selects the vertices of light paths that become lights.
   struct Choice {
     int longest;        ///< vertices 0 to `longest` - 1
     bool emitters;      ///< include vertex 0, the point on an emitter
@@ -90,12 +90,13 @@ class VplSet {
       if (v.bsdf->is_vpl_receiver(choice_.least_alpha)) add(kept_[path], v, index);
     });
   }
-  /// Sorts the lights into blocks; call once all paths are stored. The order of the lights depends
-  /// on the paths and on `groups` only.
+  /// Sorts the lights into blocks; call it once, after all paths are stored. The order depends only
+  /// on the paths and on `groups`.
   void arrange(const LightGroups& groups);
 
   std::size_t size() const { return size_; }
-  /// Blocks [0, blocks(edges)) hold the lights that are at most `edges` edges from their emitter.
+  /// Blocks [0, blocks(edges)) contain the lights that are at most `edges` edges from their
+  /// emitter.
   std::size_t blocks(int edges) const {
     if (edges < 0 || ends_.empty()) return 0;
     return ends_[std::min(static_cast<std::size_t>(edges), ends_.size() - 1)];
@@ -103,7 +104,7 @@ class VplSet {
   std::size_t blocks() const { return blocks_.size(); }
   /// Number of lights of block `b`: 64, or fewer in the last block of a kind and group.
   int count(std::size_t b) const { return blocks_[b].count; }
-  /// Bit i is set if block `b` has a light i.
+  /// A mask of the lights of block `b`.
   std::uint64_t mask(std::size_t b) const {
     const int n = count(b);
     return n < Lanes::size ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0};
@@ -133,7 +134,7 @@ class VplSet {
     float offset;
     int index;
   };
-  struct Kept {
+  struct StoredLights {
     std::vector<Diffuse> diffuse, points;
     std::vector<GeneralLight> general;
   };
@@ -144,19 +145,19 @@ class VplSet {
     std::uint32_t group;
   };
 
-  void add(Kept& path, const EmitterPoint& e) const;
-  void add(Kept& path, const Vertex& v, int index) const;
+  void add(StoredLights& path, const EmitterPoint& e) const;
+  void add(StoredLights& path, const Vertex& v, int index) const;
   void arrange_diffuse(const std::vector<Diffuse>& lights, bool points, const LightGroups& groups);
   void arrange_general(const std::vector<GeneralLight>& lights, const LightGroups& groups);
 
   Choice choice_;
   float share_;
-  std::vector<Kept> kept_;
+  std::vector<StoredLights> kept_;
   std::vector<DiffuseBlock> diffuse_;
   std::vector<BlockBounds> bounds_;  // of diffuse_
   std::vector<GeneralLight> general_;
   std::vector<Block> blocks_;
-  std::vector<std::size_t> ends_;  // blocks of lights up to each number of edges
+  std::vector<std::size_t> ends_;  // number of blocks of lights up to each number of edges
   std::size_t size_ = 0;
 };
 

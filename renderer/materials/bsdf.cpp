@@ -6,12 +6,13 @@ namespace lacuna {
 namespace {
 
 /// Probabilities that a facet reflects and that it transmits.
-struct Coin {
+struct FacetProbabilities {
   double reflect = 1, transmit = 0;
 
-  Coin() = default;  ///< the facet only reflects
-  explicit Coin(const Interface::Split& split) : Coin(split.reflected, split.transmitted) {}
-  Coin(const Rgb& reflected, const Rgb& transmitted) {
+  FacetProbabilities() = default;  ///< only reflection
+  explicit FacetProbabilities(const Interface::Split& split)
+      : FacetProbabilities(split.reflected, split.transmitted) {}
+  FacetProbabilities(const Rgb& reflected, const Rgb& transmitted) {
     const double r = double(luminance(reflected));
     const double t = double(luminance(transmitted));
     if (r + t == 0) return;
@@ -20,12 +21,13 @@ struct Coin {
   }
 };
 
-/// The facet through which two directions on opposite sides refract into one another.
+/// The facet that refracts two directions on opposite sides into one another.
 struct RefractingFacet {
   V3f m;
   float cos_o, cos_i;  ///< with m: positive and negative
-  float cos_outside;  ///< of the one on the thin side: seen from there nothing is reflected totally
-  float jacobian;     ///< (cos_o + eta cos_i)^-2
+  float
+      cos_outside;  ///< of the direction in the thinner medium, where there is no total reflection
+  float jacobian;   ///< (cos_o + eta cos_i)^-2
 
   static std::optional<RefractingFacet> find(const V3f& n, const V3f& wo, const V3f& wi,
                                              float eta) {
@@ -50,14 +52,14 @@ Rgb Bsdf::albedo() const {
          lobes_.interface.glass_color;
 }
 
-Bsdf::Seen Bsdf::seen(const V3f& n, const V3f& wo) const {
+Bsdf::ShadingFrame Bsdf::shading_frame(const V3f& n, const V3f& wo) const {
   const bool front = dot(wo, ng_) > 0;
-  Seen result{n, front, dot(wo, n), lobes_.interface.eta(front)};
+  ShadingFrame result{n, front, dot(wo, n), lobes_.interface.eta(front)};
   if (lobes_.facets_compete()) result.mean_weight = lobes_.layer.mean_weight(result.cos_o);
   return result;
 }
 
-Bsdf::Choice Bsdf::choice(const Seen& from) const {
+Bsdf::Choice Bsdf::choice(const ShadingFrame& from) const {
   Choice c;
   if (!lobes_.facets_compete()) {
     c.facets = 1;
@@ -68,7 +70,7 @@ Bsdf::Choice Bsdf::choice(const Seen& from) const {
     c.facets = double(luminance(s.reflected));
     if (lobes_.interface.clear()) {
       c.clear = double(luminance(s.transmitted));
-      // Tilted facets may reflect even where the mean facet hardly does.
+      // Tilted facets may reflect even if the mean facet hardly does.
       if (lobes_.interface.ior > 1) c.facets += double(lobes_.interface.glass * from.mean_weight);
     } else {
       c.facets += double(luminance(s.transmitted));
@@ -84,7 +86,7 @@ Bsdf::Choice Bsdf::choice(const Seen& from) const {
   return {c.diffuse / sum, c.facets / sum, c.clear / sum};
 }
 
-int Bsdf::passage(const Seen& from, const V3f& wi) const {
+int Bsdf::passage(const ShadingFrame& from, const V3f& wi) const {
   const float side_i = dot(wi, ng_);
   const float cos_i = dot(wi, from.n);
   const float same = from.front ? side_i : -side_i;
@@ -93,7 +95,7 @@ int Bsdf::passage(const Seen& from, const V3f& wi) const {
 }
 
 template <bool want_f, bool want_pdf>
-void Bsdf::reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
+void Bsdf::reflected(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                      Scatter& s) const {
   const float cos_i = dot(wi, from.n);
   if (lobes_.has_diffuse()) {
@@ -116,14 +118,15 @@ void Bsdf::reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f
   if constexpr (want_f) s.f += split.reflected * (d * ggx_g2_over_4cos(from.cos_o, cos_i, a));
   if constexpr (want_pdf) {
     // Visible normals; dm / dwi = 1 / (4 wo.m).
-    const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
+    const FacetProbabilities coin =
+        lobes_.facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
     s.pdf +=
         static_cast<float>(c->facets * coin.reflect) * 0.25F * ggx_g1_over_cos(from.cos_o, a) * d;
   }
 }
 
 template <bool want_f, bool want_pdf>
-void Bsdf::transmitted(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
+void Bsdf::transmitted(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                        Scatter& s) const {
   if (lobes_.interface.smooth() || !lobes_.facets_transmit()) return;
   const auto facet = RefractingFacet::find(from.n, wo, wi, from.eta);
@@ -134,17 +137,18 @@ void Bsdf::transmitted(const Seen& from, const Choice* c, const V3f& wo, const V
   const float common = ggx_d(facet->m, from.n, a) * ggx_g1_over_cos(from.cos_o, a) * facet->cos_o *
                        -facet->cos_i * facet->jacobian;
   // Walter et al. 2007, eq. 21, times the light's cosine; n_o^2 / (...)^2 is the jacobian, which
-  // holds the 1 / eta^2 of radiance.
+  // includes the 1 / eta^2 of radiance.
   if constexpr (want_f) s.f = share * (common * ggx_g1_over_cos(cos_i, a) * cos_i);
   if constexpr (want_pdf) {
     // dm / dwi = eta^2 |wi.m| / (...)^2 (Walter et al. 2007, eq. 17).
-    const Coin coin(lobes_.interface.split(facet->cos_o, from.eta).reflected, share);
+    const FacetProbabilities coin(lobes_.interface.split(facet->cos_o, from.eta).reflected, share);
     s.pdf = static_cast<float>(c->facets * coin.transmit) * common * from.eta * from.eta;
   }
 }
 
 template <bool want_f, bool want_pdf>
-Bsdf::Scatter Bsdf::scatter(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi) const {
+Bsdf::Scatter Bsdf::scatter(const ShadingFrame& from, const Choice* c, const V3f& wo,
+                            const V3f& wi) const {
   Scatter s;
   const int side = passage(from, wi);
   if (side > 0) reflected<want_f, want_pdf>(from, c, wo, wi, s);
@@ -157,14 +161,14 @@ Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side_i = dot(wi, ng_);
   if (lobes_.kind == Lobes::Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
   if (transport == Transport::radiance || flat_) {
-    const Seen from = seen(eye_normal(wo, side), wo);
+    const ShadingFrame from = shading_frame(eye_normal(wo, side), wo);
     const Rgb f = scatter<true, false>(from, nullptr, wo, wi).f;
-    // Reciprocity where ns = ng: importance is not scaled by 1 / eta^2.
+    // Reciprocal for ns = ng: importance is not scaled by 1 / eta^2.
     const bool unscale = transport == Transport::importance && (side > 0) != (side_i > 0);
     return unscale ? f * (from.eta * from.eta) : f;
   }
   if (std::abs(side) < cos_rounding) return Rgb(0, 0, 0);
-  const Seen from = seen(eye_normal(wi, side_i), wi);
+  const ShadingFrame from = shading_frame(eye_normal(wi, side_i), wi);
   return scatter<true, false>(from, nullptr, wi, wo).f * std::abs(side_i / side);
 }
 
@@ -176,9 +180,9 @@ Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport trans
   if (lobes_.kind == Lobes::Kind::black || side == 0) return {};
   const V3f n = eye_normal(wo, side);
   const bool front = side > 0;
-  // Before what the lobes need is computed: half of all directions lie behind an opaque surface.
+  // Early out before the lobes' terms: half of all directions lie behind an opaque surface.
   if (!transmits() && passage({n, front, 0, 1}, wi) <= 0) return {};
-  const Seen from = seen(n, wo);
+  const ShadingFrame from = shading_frame(n, wo);
   const Choice c = choice(from);
   Scatter s = scatter<true, true>(from, &c, wo, wi);
   const bool crosses = front != (dot(wi, ng_) > 0);
@@ -201,7 +205,7 @@ Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport)
   const float side = dot(wo, ng_);
   if (lobes_.kind == Lobes::Kind::black || side == 0) return {};
   const auto density = [&](const V3f& n) {
-    const Seen from = seen(n, wo);
+    const ShadingFrame from = shading_frame(n, wo);
     const Choice c = choice(from);
     return scatter<false, true>(from, &c, wo, wi).pdf;
   };
@@ -217,14 +221,16 @@ double Bsdf::delta_probability(const Choice& c, const Interface::Split& split,
                                bool transmitted) const {
   if (transmitted && lobes_.interface.clear()) return c.clear;
   if (!lobes_.interface.smooth()) return 0;
-  const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
+  const FacetProbabilities coin =
+      lobes_.facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
   return c.facets * (transmitted ? coin.transmit : coin.reflect);
 }
 
-std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3f& wo,
-                                     double u_lobe, const V2f& u) const {
+std::optional<Bsdf::LobeSample> Bsdf::sample_lobe(const ShadingFrame& from, const Choice& c,
+                                                  const V3f& wo, double u_lobe,
+                                                  const V2f& u) const {
   const V3f& n = from.n;
-  if (u_lobe < c.diffuse) return Draw{sample_cosine(n, u)};
+  if (u_lobe < c.diffuse) return LobeSample{sample_cosine(n, u)};
   u_lobe -= c.diffuse;
   const bool clear = u_lobe < c.clear;
   if (!clear && c.facets == 0) return std::nullopt;
@@ -237,12 +243,13 @@ std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3
   const float cos_m = dot(wo, m);
   if (cos_m <= 0) return std::nullopt;
   const Interface::Split split = lobes_.interface.split(cos_m, from.eta);
-  Draw result;
+  LobeSample result;
   result.delta = smooth;
   if (clear) {
     result.transmitted = true;
   } else {
-    const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
+    const FacetProbabilities coin =
+        lobes_.facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
     result.transmitted = u_lobe - c.clear >= c.facets * coin.reflect;
   }
   if (result.transmitted) {
@@ -270,7 +277,7 @@ std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
   const float side = dot(wo, ng_);
   if (lobes_.kind != Lobes::Kind::layered || side == 0) return std::nullopt;
   const V3f n = eye_normal(wo, side);
-  const Seen from = seen(n, wo);
+  const ShadingFrame from = shading_frame(n, wo);
   if (!(from.cos_o > 0)) return std::nullopt;
   const Interface::Split split = lobes_.interface.split(from.cos_o, from.eta);
   DeltaLobe lobe;
@@ -286,7 +293,7 @@ std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
     lobe.value = split.reflected;
   }
   if (passage(from, lobe.wi) != (transmitted ? -1 : 1)) return std::nullopt;
-  const Seen back = seen(transmitted ? -n : n, lobe.wi);
+  const ShadingFrame back = shading_frame(transmitted ? -n : n, lobe.wi);
   if (!(back.cos_o > 0)) return std::nullopt;
   if (transmitted) {  // eta^2 cos_i dwi = cos_o dwo
     lobe.jacobian = double(from.cos_o) / (double(from.eta) * double(from.eta) * double(back.cos_o));
@@ -297,15 +304,16 @@ std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
   return lobe;
 }
 
-std::optional<BsdfSample> Bsdf::finish_delta(const Draw& drawn, const Seen& from, const V3f& wo,
-                                             float frame_probability, Transport transport) const {
+std::optional<BsdfSample> Bsdf::finish_delta(const LobeSample& drawn, const ShadingFrame& from,
+                                             const V3f& wo, float frame_probability,
+                                             Transport transport) const {
   Rgb weight = drawn.share / frame_probability;
   if (transport == Transport::radiance) {
     if (drawn.transmitted) weight /= from.eta * from.eta;
   } else if (!flat_) {
-    // The eye, at wi, must see the surface with the normal that was used. The delta in the light's
-    // direction, seen as one in the eye's, gives the ratio of cosines with n, and just cancels the
-    // 1 / eta^2.
+    // The eye, at wi, must see the surface with the same normal. The delta, converted from the
+    // light's direction to the eye's, yields the ratio of cosines with n, and exactly cancels 1 /
+    // eta^2.
     const bool with_ns = from.n == ns_ || from.n == -ns_;
     const float divisor = abs_dot(drawn.wi, from.n) * abs_dot(wo, ng_);
     if (seen_with_ns(drawn.wi, dot(drawn.wi, ng_)) != with_ns ||
@@ -325,15 +333,15 @@ std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, double u_lobe, const V
   if (transport == Transport::importance && !flat_) {
     n = normal(false, side);
     if (in_front_of_ns(wo, side)) {
-      // Some eyes see the surface with ns, the others with ng: sample either.
+      // Some eyes see the surface with ns, others with ng: sample either.
       frame_probability = 0.5F;
       if (u_lobe < 0.5F) n = normal(true, side);
       u_lobe = 2 * u_lobe - (u_lobe >= 0.5F ? 1.0F : 0.0F);
     }
   }
-  const Seen from = seen(n, wo);
+  const ShadingFrame from = shading_frame(n, wo);
   const Choice c = choice(from);
-  const std::optional<Draw> drawn = draw(from, c, wo, u_lobe, u);
+  const std::optional<LobeSample> drawn = sample_lobe(from, c, wo, u_lobe, u);
   if (!drawn || passage(from, drawn->wi) != (drawn->transmitted ? -1 : 1)) return std::nullopt;
   if (drawn->delta) return finish_delta(*drawn, from, wo, frame_probability, transport);
 

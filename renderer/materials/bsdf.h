@@ -11,23 +11,24 @@
 namespace lacuna {
 
 /// The quantity that a path transports: radiance (eye paths) or importance (light paths). They
-/// differ where a BSDF is not symmetric: at refraction and with shading normals (Veach 1997, ch.
+/// differ if the BSDF is not symmetric: under refraction and with shading normals (Veach 1997, ch.
 /// 5).
 enum class Transport { radiance, importance };
 
 /// A direction sampled from a BSDF.
 struct BsdfSample {
   V3f wi;      ///< unit, world space, leaves the surface
-  Rgb weight;  ///< f |cos| / pdf; for a delta lobe: its reflectance over its probability
-  /// Density of wi by all non-delta lobes; meaningless for a delta lobe.
+  Rgb weight;  ///< f |cos| / pdf; for a delta lobe: reflectance or transmittance over its
+               ///< probability
+  /// Density of wi summed over all non-delta lobes; undefined for a delta lobe.
   Pdf<SolidAngle> pdf;
   bool delta = false;
   bool transmitted = false;  ///< wi lies on the other side of ng
-  /// For a direction sampled with a guide (renderer/guides): `pdf` over the density of the BSDF.
+  /// For a direction sampled with a guide (renderer/guides): `pdf` over the BSDF's density.
   float pdf_ratio = 1;
 };
 
-/// A delta lobe between two directions, as both transports sample it.
+/// A delta lobe between two directions, with the probabilities of both transports.
 struct DeltaLobe {
   V3f wi;     ///< unit
   Rgb value;  ///< f |cos| for radiance, without the delta in wi
@@ -35,41 +36,40 @@ struct DeltaLobe {
   double p_radiance = 0;
   /// Probability that importance from wi is scattered to wo, times `jacobian`.
   double p_importance = 0;
-  /// The delta in wo over the delta in wi; not 1 where light is refracted.
+  /// The delta in wo over the delta in wi: 1 except under refraction.
   double jacobian = 1;
 };
 
-/// Cosines below it are rounding noise.
+/// Smaller cosines are rounding errors.
 inline constexpr float cos_rounding = 0x1p-24F;
 
-/// A Lambertian surface lit from one direction. It scatters f (w.side) t towards unit `w` if
+/// A Lambertian surface lit from a fixed direction. Towards unit `w` it scatters f (w.side) t if
 /// w.side > 0, else 0; t is `shading_cosine_ratio` if w.ns > 0, else 1.
 struct LambertLit {
   Rgb f;                       ///< diffuse reflectance / pi
-  V3f side;                    ///< unit; ng on the side it is lit from
-  V3f ns;                      ///< unit; ns on that side
+  V3f side;                    ///< unit; ng on the lit side
+  V3f ns;                      ///< unit; ns on the lit side
   float shading_cosine_ratio;  ///< >= 0
 };
 
-/// The BSDF at one point of a surface: a flat value, made for each hit, without allocation or
+/// The BSDF at a point of a surface: a flat value, constructed for each hit, without allocation or
 /// virtual calls. The glTF metallic-roughness model, mix(dielectric, metal, metallic):
 /// - metal: GGX, Schlick from base_color to white;
 /// - dielectric: a GGX layer, Schlick from f0 to f90, over Lambert (layer.h); where it transmits, a
 ///   refracting interface with exact Fresnel (interface.h).
-/// With f0 = f90 = 0 and nothing else it is exactly Lambert.
+/// With f0 = f90 = 0 and no other lobe it is exactly Lambert.
 ///
 /// `wo` and `wi` are unit, in world space, and leave the surface; `wi` is sampled. The geometric
 /// normal `ng` decides on which side a direction lies, so light never leaks through a surface.
-/// Cosines use the shading normal `ns`, replaced by `ng` where the direction towards the eye lies
-/// behind `ns`, or, if the surface is opaque and specular, where its mirror image about `ns` lies
-/// behind the surface: there it could scatter little or nothing, and a black fringe would appear.
-/// The direction towards the eye is `wo` for radiance and `wi` for importance, so that both
-/// transports measure the same light:
+/// Cosines use the shading normal `ns`, or `ng` if the direction towards the eye lies behind `ns`,
+/// or, on an opaque specular surface, if its mirror image about `ns` lies behind the surface: with
+/// `ns` it would scatter little or nothing there, and show a black fringe. The direction towards
+/// the eye is `wo` for radiance and `wi` for importance, so both transports measure the same light:
 ///   eval(a, b, importance) = eval(b, a, radiance) |b.ng| / |a.ng|   (Veach 1997, sec. 5.3.2).
 /// All surfaces scatter on both sides; the two sides of an opaque surface are equal.
 class Bsdf {
  public:
-  /// `ng` and `ns` are unit; `ns` is flipped to the side of `ng`. wo may be on either side.
+  /// `ng` and `ns` are unit; `ns` is flipped to the side of `ng`. `wo` may lie on either side.
   Bsdf(const Lobes& lobes, const V3f& ng, const V3f& ns)
       : ng_(ng),
         ns_(dot(ns, ng) < 0 ? -ns : ns),
@@ -82,14 +82,14 @@ class Bsdf {
     return eval_any(wo, wi, transport);
   }
 
-  /// Whether eval() is the same for radiance towards `a` and towards `b`, from wherever it comes.
+  /// Whether eval() of radiance is equal towards `a` and `b`, for every direction of incidence.
   bool same_for_all(const V3f& a, const V3f& b) const {
     return lobes_.kind == Lobes::Kind::lambert && flat_ && dot(a, ng_) * dot(b, ng_) > 0;
   }
 
-  /// Density with which sample(wo) returns wi by a non-delta lobe. Its integral over the sphere is
-  /// 1 minus the probability of the delta lobes and of failure. It depends on `transport` only
-  /// where ns differs from ng: importance must also be scattered to eyes behind ns.
+  /// Density with which sample(wo) returns wi by a non-delta lobe. It integrates to 1 minus the
+  /// probability of the delta lobes and of failure. It depends on `transport` only if ns differs
+  /// from ng: importance must also reach eyes behind ns.
   Pdf<SolidAngle> pdf(const V3f& wo, const V3f& wi,
                       Transport transport = Transport::radiance) const {
     if (plain_lambert(transport)) return Pdf<SolidAngle>(lambert(wo, wi));
@@ -101,15 +101,15 @@ class Bsdf {
     Rgb value{0, 0, 0};
     Pdf<SolidAngle> pdf{};
   };
-  /// Both at once, with the same bits: they share most of their terms. Where the value is black,
-  /// the density may be left at 0.
+  /// Both at once, bit-identical to eval() and pdf(): they share most terms. If f is black, the
+  /// density may be 0.
   Evaluated evaluate(const V3f& wo, const V3f& wi, Transport transport) const {
     if (!plain_lambert(transport)) return evaluate_any(wo, wi, transport);
     const float l = lambert(wo, wi);
     return {lobes_.diffuse * l, Pdf<SolidAngle>(l)};
   }
 
-  /// Samples wi. `u_lobe` and `u` are uniform in [0, 1). Nothing where the sample fails (below the
+  /// Samples wi. `u_lobe` and `u` are uniform in [0, 1). None if the sample fails (below the
   /// surface) or the surface is black.
   std::optional<BsdfSample> sample(const V3f& wo, double u_lobe, const V2f& u,
                                    Transport transport) const {
@@ -117,18 +117,18 @@ class Bsdf {
     return sample_any(wo, u_lobe, u, transport);
   }
 
-  /// The delta lobe that reflects or transmits the direction `wo`, towards the eye; nothing if
-  /// there is none.
+  /// The delta lobe that reflects or transmits the direction `wo`, towards the eye; none if there
+  /// is no such lobe.
   std::optional<DeltaLobe> delta(const V3f& wo, bool transmitted) const;
 
-  /// Some lobe is not a delta, so the vertex can be connected to others.
+  /// Whether some lobe is not a delta, so that the vertex can be connected to others.
   bool connectible() const {
     return lobes_.kind == Lobes::Kind::lambert ||
            (lobes_.kind == Lobes::Kind::layered &&
             (!lobes_.interface.smooth() || lobes_.has_diffuse()));
   }
 
-  /// eval(from, w, importance) as a function of w, if the surface is Lambertian only.
+  /// eval(from, w, importance) as a function of w; none unless the surface is purely Lambertian.
   std::optional<LambertLit> lambert_lit(const V3f& from) const;
 
   /// Whether the surface can carry and receive virtual lights: it is opaque and has a broad lobe,
@@ -137,45 +137,45 @@ class Bsdf {
     if (transmits() || !connectible()) return false;
     return lobes_.has_diffuse() || lobes_.interface.alpha >= least_alpha;
   }
-  /// Some lobe transmits light to the other side.
+  /// Whether some lobe transmits light to the other side.
   bool transmits() const {
     return lobes_.kind == Lobes::Kind::layered && lobes_.interface.glass > 0;
   }
 
-  /// Albedo for the denoiser layer: the sum of the lobes' reflectances.
+  /// Albedo, for the layer of that name: the sum of the lobes' reflectances.
   Rgb albedo() const;
 
  private:
   friend class BsdfSeen;
 
-  /// Probabilities of the lobes for one wo; they add up to 1, or are all 0.
+  /// Probabilities of the lobes for one wo; they sum to 1, or are all 0.
   struct Choice {
     double diffuse = 0;
-    double facets = 0;  ///< a facet is sampled, which reflects or transmits
-    double clear = 0;   ///< the transmission of Interface::clear()
+    double facets = 0;  ///< of sampling a facet, which reflects or transmits
+    double clear = 0;   ///< of the transmission of Interface::clear()
   };
-  /// Quantities that depend on `wo` and one of the normals.
-  struct Seen {
+  /// The quantities that depend on `wo` and the normal used.
+  struct ShadingFrame {
     V3f n;  ///< on the side of wo
     bool front;
     float cos_o;
     float eta;
-    float mean_weight = 0;  ///< of the layer, where facets_compete()
+    float mean_weight = 0;  ///< of the layer, if facets_compete()
   };
-  /// f |cos| for radiance, and the density of one frame; 0 unless requested.
+  /// f |cos| for radiance, and the density for one normal; 0 unless requested.
   struct Scatter {
     Rgb f{0, 0, 0};
     float pdf = 0;
   };
-  /// A sample of a lobe, before its side is checked.
-  struct Draw {
+  /// A sample of a lobe, before the test of its side.
+  struct LobeSample {
     V3f wi;
     Rgb share{0, 0, 0};  ///< of a delta lobe: reflectance or transmittance over its probability
     bool delta = false;
     bool transmitted = false;
   };
 
-  /// A single symmetric Lambertian lobe: the fast path.
+  /// Whether the BSDF is a single symmetric Lambertian lobe: the fast path.
   bool plain_lambert(Transport transport) const {
     return lobes_.kind == Lobes::Kind::lambert && (flat_ || transport == Transport::radiance);
   }
@@ -204,10 +204,10 @@ class Bsdf {
   }
   /// A normal with a positive cosine to `w`: ns if possible.
   V3f front_normal(const V3f& w, float side) const { return normal(in_front_of_ns(w, side), side); }
-  /// Whether an eye in direction `w` sees the surface with the normal ns, else with ng.
+  /// Whether an eye in direction `w` sees the surface with ns; otherwise it uses ng.
   bool seen_with_ns(const V3f& w, float side) const {
     if (!in_front_of_ns(w, side)) return false;
-    // Glass is left out: light that enters it by ng may be reflected inside by ns for ever.
+    // Not for glass: light that enters it by ng could be reflected inside by ns forever.
     if (flat_ || lobes_.kind != Lobes::Kind::layered || transmits()) return true;
     return dot(reflect(w, normal(true, side)), ng_) * side > 0;
   }
@@ -220,31 +220,33 @@ class Bsdf {
   std::optional<BsdfSample> sample_any(const V3f& wo, double u_lobe, const V2f& u,
                                        Transport transport) const;
 
-  Seen seen(const V3f& n, const V3f& wo) const;
-  Choice choice(const Seen& from) const;
+  ShadingFrame shading_frame(const V3f& n, const V3f& wo) const;
+  Choice choice(const ShadingFrame& from) const;
   /// `c` may be null unless want_pdf.
   template <bool want_f, bool want_pdf>
-  Scatter scatter(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi) const;
+  Scatter scatter(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi) const;
   template <bool want_f, bool want_pdf>
-  void reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi, Scatter& s) const;
+  void reflected(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
+                 Scatter& s) const;
   template <bool want_f, bool want_pdf>
-  void transmitted(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
+  void transmitted(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                    Scatter& s) const;
   /// 1: wi is on wo's side of both normals (reflection); -1: on the other side of both
   /// (transmission); 0: neither.
-  int passage(const Seen& from, const V3f& wi) const;
+  int passage(const ShadingFrame& from, const V3f& wi) const;
 
-  std::optional<Draw> draw(const Seen& from, const Choice& c, const V3f& wo, double u_lobe,
-                           const V2f& u) const;
-  /// Probability of the delta lobe of the facets, or of Interface::clear(); `split` is theirs.
+  std::optional<LobeSample> sample_lobe(const ShadingFrame& from, const Choice& c, const V3f& wo,
+                                        double u_lobe, const V2f& u) const;
+  /// Probability of the delta lobe of the facets, or of Interface::clear(), with facets of `split`.
   double delta_probability(const Choice& c, const Interface::Split& split, bool transmitted) const;
-  /// Probability with which importance from `w` is scattered in the frame of `n`.
+  /// Probability with which importance from `w` is scattered with the normal `n`.
   float frame_probability(const V3f& w, const V3f& n) const;
-  std::optional<BsdfSample> finish_delta(const Draw& drawn, const Seen& from, const V3f& wo,
-                                         float frame_probability, Transport transport) const;
+  std::optional<BsdfSample> finish_delta(const LobeSample& drawn, const ShadingFrame& from,
+                                         const V3f& wo, float frame_probability,
+                                         Transport transport) const;
 
   V3f ng_, ns_;
-  bool flat_;  // ns is ng, up to the rounding of an interpolated normal
+  bool flat_;  // ns equals ng, up to the rounding of an interpolated normal
   Lobes lobes_;
 };
 

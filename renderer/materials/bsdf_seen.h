@@ -5,13 +5,13 @@
 
 namespace lacuna {
 
-/// An opaque BSDF with fixed wo, evaluated for eight directions wi at once.
+/// An opaque BSDF with a fixed wo, evaluated for eight directions wi at once.
 class BsdfSeen {
  public:
   /// `bsdf` must not transmit.
   BsdfSeen(const Bsdf& bsdf, const V3f& wo);
 
-  /// Bsdf::eval(wo, w, Transport::radiance) of unit `w`, times `factor`.
+  /// Bsdf::eval(wo, w, Transport::radiance) for unit `w`, times `factor`.
   Float8x3 eval(const Float8x3& w) const {
     const Float8 cos_i = w.x * n_.x + w.y * n_.y + w.z * n_.z;
     const Float8 side = w.x * side_.x + w.y * side_.y + w.z * side_.z;

@@ -5,9 +5,9 @@
 
 namespace lacuna {
 
-/// Maps the unit square to the unit disk (Shirley and Chiu 1997), preserving areas up to a factor
-/// and neighbourhoods. `u` in [0, 1)^2 is the lower corner of a cell of side 2^-24, whose centre is
-/// mapped: the result lies strictly inside the disk, so that 1 - r^2 > 0 in floats.
+/// Maps the unit square to the unit disk (Shirley and Chiu 1997), preserving relative areas and
+/// neighbourhoods. `u` in [0, 1)^2 is the lower corner of a cell of side 2^-24, and the cell's
+/// centre is mapped, so the result lies strictly inside the disk and 1 - r^2 > 0 in floats.
 inline V2f sample_disk(const V2f& u) {
   constexpr float half_cell = 0x1p-24F;  // of [-1, 1]
   const float a = (2 * u.x - 1) + half_cell;
@@ -16,7 +16,7 @@ inline V2f sample_disk(const V2f& u) {
   const float r = wide ? a : b;
   const float q = wide ? b : a;
   const float x = (pi / 4) * (q / r);
-  // Taylor series on [-pi/4, pi/4], both to 3e-8: no call, and the same bits with every C library.
+  // Taylor series on [-pi/4, pi/4], accurate to 3e-8: no call, and equal bits with every C library.
   const float x2 = x * x;
   const float s =
       x * (1 + x2 * (-1.0F / 6 + x2 * (1.0F / 120 + x2 * (-1.0F / 5040 + x2 * (1.0F / 362880)))));

@@ -5,18 +5,18 @@
 namespace lacuna {
 namespace {
 
-/// Of a vector whose square neither vanishes nor overflows: alpha is at least ggx_min_alpha.
+/// Normalises a vector whose square neither vanishes nor overflows, as alpha >= ggx_min_alpha.
 V3f unit(const V3f& v) { return v * (1 / std::sqrt(v.length2())); }
 
 }  // namespace
 
 V3f ggx_sample_visible(const V3f& wo, float alpha, const V2f& u) {
-  // Stretched so that the surface becomes a hemisphere.
+  // Stretch so that the surface becomes a hemisphere.
   const V3f v = unit({alpha * wo.x, alpha * wo.y, wo.z});
   const float side2 = v.x * v.x + v.y * v.y;
   const V3f t1 = side2 > 0 ? V3f(-v.y, v.x, 0) / std::sqrt(side2) : V3f(1, 0, 0);
   const V3f t2 = cross(v, t1);
-  // The hemisphere as seen along v: half a disk, and half an ellipse of height v.z.
+  // The hemisphere projected along v: half a disk, and half an ellipse of height v.z.
   const V2f d = sample_disk(u);
   const float across = std::sqrt(1 - d.x * d.x);
   const float s = 0.5F * (1 + v.z);

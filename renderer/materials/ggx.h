@@ -9,14 +9,14 @@ namespace lacuna {
 // "Understanding the Masking-Shadowing Function"). Isotropic, width `alpha` in [ggx_min_alpha, 1].
 // Cosines are positive.
 
-/// Lobes below this width are treated as smooth. The rounding error of a float direction, about
-/// 6e-8, is 6e-4 of a lobe of this width: its density is still known to a fraction of a percent.
+/// Lobes below this width are treated as smooth. A float direction has a rounding error of about
+/// 6e-8, 6e-4 of a lobe of this width: its density is still accurate to a fraction of a percent.
 /// Sharper lobes would be rounding noise, and are narrower than a pixel of any picture.
 inline constexpr float ggx_min_alpha = 1e-4F;
 
-/// Density of facet normals, per projected area, as a function of the cosine and squared sine of
-/// the angle to the mean normal; T and A are float or Float8. The sine is an argument because 1 -
-/// cos^2 would lose it for small alpha.
+/// Density of facet normals, per projected area, from the cosine and squared sine of the angle to
+/// the mean normal; T and A are float or Float8. The sine is an argument because 1 - cos^2 would
+/// lose it for small alpha.
 template <class T, class A>
 T ggx_d(const T& cos, const T& sin2, const A& alpha) {
   const A a2 = alpha * alpha;
@@ -28,7 +28,7 @@ inline float ggx_d(const V3f& m, const V3f& n, float alpha) {
   return ggx_d(dot(m, n), cross(n, m).length2(), alpha);
 }
 
-/// sqrt(alpha^2 + (1 - alpha^2) cos^2), which all of Smith's terms contain.
+/// sqrt(alpha^2 + (1 - alpha^2) cos^2), a term of all of Smith's functions.
 template <class T, class A>
 T ggx_slope_root(const T& cos, const A& alpha) {
   using std::sqrt;

@@ -21,8 +21,8 @@ SurfaceParams surface_params(const Material& material, Textures textures,
   p.alpha = roughness * roughness;
   p.transmission = material.transmission * texel(material.transmission_texture).rgb.x;
 
-  // KHR_materials_specular. An ior of 0 means a reflectance of 1; transmitted light is refracted
-  // as usual.
+  // KHR_materials_specular. An ior of 0 means a reflectance of 1; transmitted light is still
+  // refracted.
   if (material.ior != 0) p.ior = material.ior;
   const float f0 = material.ior == 0 ? 1.0F : normal_reflectance(material.ior);
   p.f90 = material.specular * texel(material.specular_texture).a;

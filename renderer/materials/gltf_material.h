@@ -17,7 +17,7 @@ inline Rgba texture_at(const TextureRef& ref, Textures textures, const std::arra
 }
 
 /// The surface parameters at texture coordinates `uv` (TEXCOORD_0 and _1). The textures that
-/// `material` uses must be decoded. KHR_materials_ior and _specular become f0 and f90; a surface
+/// `material` uses must be decoded. KHR_materials_ior and _specular determine f0 and f90; a surface
 /// with both 0 is Lambertian.
 SurfaceParams surface_params(const Material& material, Textures textures,
                              const std::array<V2f, 2>& uv);
@@ -31,7 +31,7 @@ inline void prefetch_textures(const Material& material, Textures textures,
   });
 }
 
-/// Emitted radiance, equal in every direction of the emitting side or sides.
+/// Emitted radiance, equal in all directions of the emitting side or sides.
 inline Rgb emission(const Material& material, Textures textures, const std::array<V2f, 2>& uv) {
   if (!material.emission_texture.used()) return material.emission;
   return material.emission * texture_at(material.emission_texture, textures, uv).rgb;

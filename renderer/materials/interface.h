@@ -7,7 +7,7 @@ namespace lacuna {
 
 struct SurfaceParams;
 
-/// The specular boundary of the glTF surface. One set of facets of width `alpha` models all of
+/// The specular boundary of the glTF surface. One distribution of facets, of width `alpha`, models
 /// - the metal: Schlick from the base colour to white,
 /// - the layer over the opaque dielectric: Schlick from f0 to f90,
 /// - the boundary of the transmissive dielectric: exact Fresnel, remapped from its own range to
@@ -36,14 +36,14 @@ struct Interface {
   }
 
   bool smooth() const { return alpha == 0; }
-  /// Transmission is not scattered although the facets are rough: its spread, about alpha (ior -
-  /// 1), is below ggx_min_alpha.
+  /// Whether transmission is not scattered although the facets are rough: its spread, about alpha
+  /// (ior - 1), is below ggx_min_alpha.
   bool clear() const { return !smooth() && alpha * (ior - 1) < ggx_min_alpha; }
-  /// eta for light that arrives on the front or back side.
+  /// eta for light from the front or back side.
   float eta(bool front) const { return front ? ior : 1 / ior; }
 
-  Rgb r0{0, 0, 0};  // metal and opaque dielectric, each by its share, at normal incidence
-  float r90 = 0;    // and at grazing incidence
+  Rgb r0{0, 0, 0};  // of metal and opaque dielectric, weighted by their shares, at normal incidence
+  float r90 = 0;    // the same at grazing incidence
   float alpha = 0;
   float glass = 0;           // share of the transmissive dielectric
   Rgb glass_color{0, 0, 0};  // that share times the base colour
@@ -61,7 +61,7 @@ struct Interface {
   }
 
   float exact_f0_ = 0,
-        inv_range_ = 1;  // of exact Fresnel: its value at normal incidence, 1 / (1 - it)
+        inv_range_ = 1;  // remaps exact Fresnel: 1 / (1 - its value at normal incidence)
 };
 
 }  // namespace lacuna

@@ -13,8 +13,7 @@ namespace {
 /// [0, 1].
 class Table {
  public:
-  /// Computes the rows used at `row` if missing; call before at() and hemisphere().
-  /// From any thread.
+  /// Computes the rows for `row` if missing; call before at() and hemisphere(). Thread-safe.
   void need(float row) {
     const std::size_t r = split(row, rows).first;
     std::call_once(made_[r], [&] { fill_row(r); });
@@ -28,7 +27,7 @@ class Table {
     const float high = values_[r + 1][c] + fc * (values_[r + 1][c + 1] - values_[r + 1][c]);
     return low + fr * (high - low);
   }
-  /// at() of a row, at the columns themselves.
+  /// at() of a row, at all columns.
   template <std::size_t n>
   void columns_at(float row, std::array<float, n>& out) const {
     static_assert(n == columns);
@@ -60,8 +59,8 @@ class Table {
       values_[r][c] =
           alpha < ggx_min_alpha ? schlick_weight(cos) : mean(std::max(cos, 1e-4F), alpha);
     }
-    // Integral of the interpolant times 2 cos d cos = 4 x^3 dx, exact, so that the base keeps its
-    // share.
+    // Exact integral of the interpolant times 2 cos d cos = 4 x^3 dx, so that the base conserves
+    // energy.
     double sum = 0;
     for (std::size_t c = 0; c + 1 < columns; ++c) {
       const double x0 = static_cast<double>(c) / (columns - 1);
@@ -74,7 +73,7 @@ class Table {
     hemisphere_[r] = static_cast<float>(sum);
   }
 
-  /// Visible normals on a regular grid, each with the unshadowed share of its light.
+  /// The mean over visible normals on a regular grid, each weighted by its unshadowed fraction.
   static float mean(float cos, float alpha) {
     constexpr int n = 24;
     const V3f wo(std::sqrt(1 - cos * cos), 0, cos);
@@ -98,8 +97,8 @@ class Table {
   std::array<float, rows> hemisphere_{};
 };
 
-/// A row is computed when the first surface needs it, in half a millisecond: a scene has few
-/// roughnesses.
+/// A row is computed when the first surface needs it, in half a millisecond; a scene has few
+/// different roughnesses.
 Table& table() {
   static Table result;
   return result;

@@ -9,19 +9,19 @@ namespace lacuna {
 /// With K(w) the mean of Fresnel's factor over the facets that reflect light to w, the base is
 /// scaled by (1 - K(wo)) (1 - K(wi)) / (1 - mean K) (Kelemen and Szirmay-Kalos 2001, "A Microfacet
 /// Based Coupled Specular-Matte BRDF Model", sec. 2.3). This is reciprocal, and a white base
-/// reflects exactly the share 1 - K(wo) that the layer transmits. The sample implementation in the
-/// appendix of glTF 2.0 uses 1 - F of the half vector instead, which nearly doubles the energy at
-/// grazing angles.
+/// reflects exactly the fraction 1 - K(wo) that the layer transmits. The sample implementation in
+/// the appendix of glTF 2.0 uses 1 - F of the half vector instead, which nearly doubles the energy
+/// at grazing angles.
 class Layer {
  public:
   Layer() = default;  ///< no layer
-  /// Schlick's reflectances of the layer, the largest channel of each, and its GGX width: 0 or at
+  /// Schlick's reflectances of the layer, each the largest channel, and its GGX width: 0 or at
   /// least ggx_min_alpha.
   Layer(float f0, float f90, float alpha);
 
   /// Mean of schlick_weight() over the facets that reflect light to a direction with this cosine.
   float mean_weight(float cos) const;
-  /// 1 - K of a direction: the share that reaches the base. In [0, 1].
+  /// 1 - K of a direction: the fraction that reaches the base. In [0, 1].
   template <class T>
   T let_through(const T& mean_weight) const {
     return 1 - (f0_ + (f90_ - f0_) * mean_weight);
@@ -31,7 +31,7 @@ class Layer {
   T scale(float through_o, const T& through_i) const {
     return through_o * through_i * norm_;
   }
-  /// Nothing reaches the base.
+  /// Whether no light reaches the base.
   bool closed() const { return norm_ == 0; }
 
  private:
@@ -39,7 +39,7 @@ class Layer {
 
   float f0_ = 0, f90_ = 0;
   float norm_ = 1;  // 1 / (1 - mean K)
-  float row_ = -1;  // position in the table of means; negative: smooth
+  float row_ = -1;  // position in the table of means; negative: the layer is smooth
 };
 
 }  // namespace lacuna

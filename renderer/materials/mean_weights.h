@@ -10,7 +10,7 @@ namespace lacuna {
 /// Layer::mean_weight() of one layer, for eight cosines at once.
 class MeanWeights {
  public:
-  static constexpr int columns = 33;  ///< equidistant over the root of the cosine
+  static constexpr int columns = 33;  ///< equidistant in the square root of the cosine
 
   explicit MeanWeights(const Layer& layer);
   Float8 at(Float8 cos) const;

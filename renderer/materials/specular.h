@@ -5,7 +5,7 @@
 namespace lacuna {
 
 // Fresnel reflectance, and the directions of a mirror and of a smooth interface. `eta` is always
-// the index of refraction on the far side over the one on the side of `w`; `cos` = dot(w, m) > 0.
+// the refractive index on the far side over that on the side of `w`; `cos` = dot(w, m) > 0.
 
 /// Schlick's (1 - cos)^5 (Schlick 1994, eq. 15).
 template <class T>
@@ -26,10 +26,10 @@ inline float normal_reflectance(float ior) {
 struct Fresnel {
   float reflectance;  ///< [0, 1]; exactly 1 under total internal reflection
   float cos_t;        ///< >= 0: cosine on the far side
-  bool total;         ///< total internal reflection: nothing refracts
+  bool total;         ///< whether there is total internal reflection
 };
 
-/// Fresnel's equations, exact. The cosine on the far side is computed from (eta^2 - 1) + cos^2, so
+/// Fresnel's exact equations. The cosine on the far side is computed from (eta^2 - 1) + cos^2, so
 /// that directions stay exactly straight for eta = 1.
 inline Fresnel fresnel_dielectric(float cos, float eta) {
   const float t2 = (eta - 1) * (eta + 1) + cos * cos;
@@ -42,11 +42,11 @@ inline Fresnel fresnel_dielectric(float cos, float eta) {
           false};
 }
 
-/// The mirror image of `w` about `m`; both leave the surface.
+/// The mirror image of `w` about `m`; both directions leave the surface.
 inline V3f reflect(const V3f& w, const V3f& m) { return 2 * dot(w, m) * m - w; }
 
 /// The refracted direction, on the far side of `m` (Snell); `cos_t` from fresnel_dielectric().
-/// Normalised, because the rounding errors of `w` grow by 1 / eta on the way out of a dense medium.
+/// Normalised, because rounding errors of `w` grow by 1 / eta on leaving a dense medium.
 inline V3f refract(const V3f& w, const V3f& m, float eta, float cos_t) {
   const float inv = 1 / eta;
   const V3f t = (dot(w, m) * inv - cos_t) * m - w * inv;

@@ -6,16 +6,16 @@
 
 namespace lacuna {
 
-/// What a state of a Markov chain contributes to the picture.
+/// The contribution of a state of a Markov chain to the picture.
 struct ChainState {
   struct Pixel {
     std::uint32_t index;
     Rgb value;
   };
-  /// The picture is the mean, over all states of equal probability, of these, times its number of
+  /// The picture is the mean of these over all states with equal probability, times its number of
   /// pixels.
   std::vector<Pixel> pixels;
-  /// The sum of their luminances: the density that chains follow, up to a factor.
+  /// The sum of their luminances: the chain's target density, up to a factor.
   double scalar = 0;
 
   void clear() {

@@ -17,23 +17,24 @@ struct ChainPaths {
   int least_edges = 1;
 };
 
-/// The mutations of Markov chains: what the states are, how a proposal is made and evaluated. An
-/// object holds the states of up to `size` chains, which one thread advances together.
+/// The mutations of Markov chains: the states, and how a proposal is built and evaluated. An object
+/// holds the states of up to `size` chains, which one thread advances together.
 ///
 /// - M(settings, paths).
-/// - M::Workspace(context, lengths): what evaluation needs beside the states. A thread has one for
-///   all chains that it advances, one batch after the other; `context` outlives it.
-/// - start(i, rng): chain i gets an independent sample as its proposal; it depends on `rng` alone.
-/// - propose(i, rng): chain i chooses a proposal. `rng` is read until evaluate() has returned, here
-///   and in start().
+/// - M::Workspace(context, lengths): further data for evaluation. A thread has one for all chains
+///   that it advances, batch after batch; `context` outlives it.
+/// - start(i, rng): the proposal of chain i becomes an independent sample, which depends on `rng`
+///   only.
+/// - propose(i, rng): selects a proposal for chain i. Here and in start(), `rng` is read until
+///   evaluate() returns.
 /// - evaluate(n, workspace, counters): evaluates the proposals of chains [0, n).
-/// - current(i), proposed(i): what state and proposal contribute to the picture. E of the pixels of
-///   an independent sample, times the number of pixels, is the picture; those of other states have
-///   any scale.
+/// - current(i), proposed(i): the contributions of state and proposal. For an independent sample,
+///   the expectation of the pixels times the number of pixels is the picture; those of other states
+///   have any scale.
 /// - acceptance_ratio(i): the target density of the proposal times the density of proposing the
-///   state from it, over the target density of the state times the density of the proposal from it
-///   (Veach 1997, eq. 11.5); not of start().
-/// - kinds, kind(i): names for the report, and which of them the proposal of chain i is.
+///   state from it, over the target density of the state times the density of proposing the
+///   proposal from it (Veach 1997, eq. 11.5); not after start().
+/// - kinds, kind(i): names for the report, and the index of the proposal's kind.
 /// - accept(i): the proposal becomes the state.
 template <class M>
 concept Mutation = requires(M m, const M& k, std::size_t i, Rng& rng,

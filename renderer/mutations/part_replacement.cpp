@@ -5,7 +5,7 @@
 namespace lacuna {
 namespace {
 
-/// The number of vertices changes by this much at most.
+/// The largest change of the number of vertices.
 constexpr int most_change = 2;
 
 /// Weight of deleting `n` vertices: short parts are accepted more often.
@@ -13,7 +13,7 @@ double deletion_weight(int n) { return n == 0 ? 0.25 : std::ldexp(1.0, -n); }
 /// Sum of the weights for a path of `edges`.
 double deletion_sum(int edges) { return 1.25 - std::ldexp(1.0, -edges); }
 
-/// Number of places of `n` vertices in a path x_1 ... x_edges. None are inserted behind the
+/// Number of positions of `n` vertices in a path x_1 ... x_edges. None are inserted after the
 /// emitter.
 int places(int edges, int n) { return n == 0 ? edges : edges - n + 1; }
 
@@ -58,7 +58,7 @@ bool PartReplacement::propose(const WholePath& path, PathBuilder& builder, Rng& 
   while (added_ < deleted_ + most_change && u >= weight(k, deleted_, added_, to_end_)) {
     u -= weight(k, deleted_, added_++, to_end_);
   }
-  if (weight(k, deleted_, added_, to_end_) == 0) return false;  // the sum was rounded
+  if (weight(k, deleted_, added_, to_end_) == 0) return false;  // possible by rounding of the sum
   const int eye = static_cast<int>(rng.below(static_cast<std::uint64_t>(added_) + 1));
   const int light = added_ - eye;
   builder.keep(path, first_, last);

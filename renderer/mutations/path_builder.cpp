@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Where a vertex of a path is, or the point on an emitter that it starts at.
+/// The position of a vertex of a path, or of its start point on an emitter.
 struct NodePlace {
   const PathVertex& p;
 
@@ -133,7 +133,8 @@ bool PathBuilder::go_from_light(const V3f& w) {
 
 bool PathBuilder::enter_scene(const V3f& at, const V3f& w) {
   light_.back().delta = false;
-  // As far back from a surface, the ray starts beyond the scene by its radius.
+  // Starts this far before the surface point, so that the ray begins outside the scene by its
+  // radius.
   const double back = 3 * measure_.scene().bounds().radius();
   return arrive({V3f(V3d(at) - V3d(w) * back), w}, light_);
 }
@@ -154,7 +155,8 @@ bool PathBuilder::follow_from_light(bool transmitted) {
   const Vertex& v = vertex(node);
   const auto lobe = v.bsdf->delta(v.wp, transmitted);
   if (!lobe) return false;
-  // Eye and light may see the surface with different normals; then no eye sees this lobe.
+  // Eye and light may see the surface with different normals; then this lobe is invisible to the
+  // eye.
   const auto seen = v.bsdf->delta(lobe->wi, transmitted);
   if (!seen || (seen->wi - v.wp).length2() > 1e-6F) return false;
   node.delta = true;

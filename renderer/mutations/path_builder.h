@@ -6,49 +6,51 @@
 
 namespace lacuna {
 
-/// Builds a path from both ends: vertices are appended to its part at the eye or to its part at the
-/// light, and the two parts are joined. Functions that return false found no vertex; the path is
-/// then abandoned.
+/// Builds a path from both ends: vertices are appended to the eye's part or to the light's part,
+/// and the two parts are connected. Functions return false if they find no vertex; the path is then
+/// abandoned.
 class PathBuilder {
  public:
-  /// The parts, kept from one path to the next for their memory.
+  /// The parts; reused for the memory.
   struct Parts {
-    std::vector<PathNode> eye, light;  ///< from x_0 on; from x_k on, towards the eye
+    std::vector<PathNode> eye, light;  ///< from x_0; from x_k, towards the eye
   };
-  /// The vertices that a path newly has are taken from `pool`; all outlive the building.
+  /// New vertices of the path are taken from `pool`. All arguments must outlive this.
   PathBuilder(const PathMeasure& measure, VertexPool& pool, Parts& parts, Counters& counters)
       : measure_(measure), pool_(pool), counters_(counters), eye_(parts.eye), light_(parts.light) {
     eye_.clear();
     light_.clear();
   }
 
-  /// Begins with the nodes of `path` up to x_first and from x_last on; none of the light's if
-  /// `last` is k + 1.
+  /// Starts with the nodes of `path` up to x_first and from x_last; no nodes at the light if `last`
+  /// is k + 1.
   void keep(const WholePath& path, int first, int last);
-  /// Replaces what is kept of one part only: up to x_first, from x_last on. It was not appended to.
+  /// Replaces the kept nodes of one part: up to x_first, or from x_last. Nothing may have been
+  /// appended to that part.
   void keep_eye(const WholePath& path, int first);
   void keep_light(const WholePath& path, int last);
 
-  /// Appends `n` vertices sampled from the eye's end: the film is sampled uniformly, then BSDFs.
+  /// Appends `n` vertices sampled from the eye's end: a uniform film position, then BSDFs.
   bool sample_from_eye(int n, Rng& rng);
-  /// Appends `n` vertices sampled from the light's end; the first of an empty end is a point on an
-  /// emitter.
+  /// Appends `n` vertices sampled from the light's end; if the part is empty, the first is a point
+  /// on an emitter.
   bool sample_from_light(int n, Rng& rng);
 
-  /// Appends the vertex that a ray through film position `at` meets. The eye's end is x_0.
+  /// Appends the vertex hit by the ray through film position `at`. The eye's end must be x_0.
   bool look_through(const V2f& at);
-  /// Append the vertex that a ray from the end along unit `w` meets.
+  /// Append the vertex hit by the ray from the end along unit `w`.
   bool go_from_eye(const V3f& w);
   bool go_from_light(const V3f& w);
-  /// Appends the vertex that a ray along unit `w` through `at` meets, from outside the scene. The
-  /// light's end is x_k, an emitter at infinity; `at` is beside a surface, across `w`.
+  /// Appends the vertex hit by a ray along unit `w` through `at`, which starts outside the scene.
+  /// The light's end must be x_k, an emitter at infinity; `at` lies beside a surface point,
+  /// perpendicular to `w`.
   bool enter_scene(const V3f& at, const V3f& w);
-  /// Append the vertex behind the delta lobe at the end.
+  /// Append the vertex reached by the delta lobe at the end.
   bool follow_from_eye(bool transmitted);
   bool follow_from_light(bool transmitted);
 
-  /// Makes the end of the eye's part, a vertex that a ray met, the end of the path. False if it is
-  /// on no emitter.
+  /// Makes the end of the eye's part, a vertex that a ray hit, the end of the path. Returns false
+  /// if it is not on an emitter.
   bool end_on_emitter();
 
   const std::vector<PathNode>& eye() const { return eye_; }
@@ -58,12 +60,12 @@ class PathBuilder {
   bool eye_on_surface() const { return vertex(eye_.back()).kind == Vertex::Kind::surface; }
   bool light_is_infinite() const { return vertex(light_.back()).kind == Vertex::Kind::background; }
 
-  /// Joins the ends by a segment, if the light's is not empty, and writes the nodes to `path`.
-  /// False where the eye's end left the scene.
+  /// Connects the ends by a segment, unless the light's part is empty, and writes the nodes to
+  /// `path`. Returns false if the eye's end left the scene.
   bool join(WholePath& path);
-  /// The segment that joins both parts is unoccluded.
+  /// Whether the segment that connects both parts is unoccluded.
   bool visible() const;
-  /// Gives back the vertices that were appended since keep().
+  /// Returns the vertices appended since keep() to the pool.
   void abandon();
 
  private:

@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::size_t no_path = ~std::size_t{0};
 
-/// A point on the film: the pixel, and where in it the camera samples. In 53 bits, so that small
-/// steps move within a pixel.
+/// A point on the film: the pixel, and the position in it at which the camera samples. In 53 bits,
+/// so that small steps move within a pixel.
 struct FilmPoint {
   V2i pixel;
   V2f u;
@@ -37,7 +37,7 @@ void PathEvaluator::evaluate(std::span<const Point> points, Counters& counters) 
   for (const Point& p : points) p.result->clear();
   walk_lights(points, counters);
   walk_eyes(points, counters);
-  const auto arrived = [&](const Unshadowed& u) {
+  const auto arrived = [&](const PendingContribution& u) {
     const Point& point = points[u.point];
     if (!u.splat) return add(point, u.pixel, u.value, counters);
     context_.camera.splat(u.at, [&](std::uint32_t pixel, float share) {
@@ -96,7 +96,7 @@ void PathEvaluator::walk_eyes(std::span<const Point> points, Counters& counters)
   for (std::size_t i = 0; i < points.size(); ++i) {
     const WantedPaths& wanted = points[i].wanted;
     if (wanted.most_t < 2) continue;
-    // A light path that is too short can be joined to nothing.
+    // A light path that is too short has no vertex to connect.
     const int light = light_of_[i] == no_path ? 0 : lights_.length(light_of_[i]);
     if (light < wanted.least_s) continue;
     Rng rng(*points[i].eye);

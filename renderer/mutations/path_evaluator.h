@@ -12,13 +12,13 @@
 
 namespace lacuna {
 
-/// What is asked of a pair of paths: the strategies (s, t) with s and t within these bounds, of
-/// paths of `least_edges` to `most_edges`.
+/// The strategies (s, t) to evaluate for a pair of paths: s and t within these bounds, and paths of
+/// `least_edges` to `most_edges`.
 struct WantedPaths {
   int least_s = 0, most_s = 0;
   int least_t = 1, most_t = 1;
   int least_edges = 1, most_edges = 1;
-  float scale = 1;  ///< 1 / the probability that these were asked for
+  float scale = 1;  ///< 1 / the probability of selecting these
 
   bool wants(int s, int t) const {
     const int edges = s + t - 1;
@@ -27,8 +27,8 @@ struct WantedPaths {
   }
 };
 
-/// Evaluates points of primary sample space: an eye path and a light path for each, joined by the
-/// wanted strategies of bidirectional path tracing. A batch is traced together. Of one thread.
+/// Evaluates points of primary sample space: for each, an eye path and a light path, connected by
+/// the wanted strategies of bidirectional path tracing. Traces a batch together. Not thread-safe.
 class PathEvaluator {
  public:
   static constexpr std::size_t size = 16;
@@ -37,7 +37,7 @@ class PathEvaluator {
   PathEvaluator(const PathEvaluator&) = delete;
   PathEvaluator& operator=(const PathEvaluator&) = delete;
 
-  /// One point: its streams, which strategies, and where the result goes.
+  /// A point: its streams, the strategies, and the destination of the result.
   struct Point {
     RandomWords* eye = nullptr;
     RandomWords* light = nullptr;
@@ -48,18 +48,18 @@ class PathEvaluator {
   void evaluate(std::span<const Point> points, Counters& counters);
 
  private:
-  /// A contribution that waits for its shadow ray.
-  struct Unshadowed {
+  /// A contribution that a shadow ray must test.
+  struct PendingContribution {
     Rgb value;
     std::size_t point;
-    std::uint32_t pixel;  ///< not of a splat
+    std::uint32_t pixel;  ///< unused for a splat
     bool splat = false;
     V2f at{0, 0};
   };
 
   void walk_lights(std::span<const Point> points, Counters& counters);
   void walk_eyes(std::span<const Point> points, Counters& counters);
-  /// Of vertex `depth` of eye path `i`.
+  /// Evaluates the strategies at vertex `depth` of eye path `i`.
   void gather(const Point& point, std::size_t i, int depth);
   void add(const Point& point, std::uint32_t pixel, const Rgb& value, Counters& counters) const;
 
@@ -70,10 +70,10 @@ class PathEvaluator {
   EyeBatch eyes_;
   LightBatch lights_;
   std::vector<Rng> rngs_;
-  std::vector<int> vertices_;                           // that are wanted of each light path
-  std::array<std::size_t, size> light_of_{};            // of each point, the light path's index
-  std::array<std::size_t, EyeBatch::size> point_of_{};  // of each eye path
-  ShadowQueue<Unshadowed> queue_;
+  std::vector<int> vertices_;                           // wanted length of each light path
+  std::array<std::size_t, size> light_of_{};            // of each point: index of its light path
+  std::array<std::size_t, EyeBatch::size> point_of_{};  // of each eye path: its point
+  ShadowQueue<PendingContribution> queue_;
   SparseStop stop_;
 };
 

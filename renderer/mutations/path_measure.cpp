@@ -5,12 +5,12 @@
 namespace lacuna {
 namespace {
 
-/// The edge between x_i and x_{i+1}; false where they are in one place.
+/// The edge between x_i and x_{i+1}; false if they coincide.
 bool make_edge(const Vertex& near_eye, const PathVertex& near_light, bool last, PathEdge& edge) {
   const Connection c = edge_between(VertexPlace{near_eye}, VertexPlace{near_light.v});
   if (!(c.distance2 > 0)) return false;
   edge.w = c.w;
-  // Points in space have no surface that a density is per area of.
+  // A point in space has no surface: its density is not per area.
   const bool surface = !last || near_light.emitter.kind == EmitterPoint::Kind::area;
   const float cosine = surface && near_light.v.kind != Vertex::Kind::background
                            ? abs_dot(near_light.v.surface.ng, edge.w)
@@ -139,7 +139,7 @@ double PathMeasure::per_direction_from_light(const WholePath& path, const Vertex
 
 long double PathMeasure::between(const WholePath& path, const VertexPool& pool, int first,
                                  int last) const {
-  long double lights = 1;  // density of x_j ... x_{last-1} from the light
+  long double lights = 1;  // density of sampling x_j ... x_{last-1} from the light
   long double sum = joinable(path, pool, last - 1) ? 1 : 0;
   for (int j = last - 1; j > first; --j) {
     lights *= from_light(path, pool, j);

@@ -14,7 +14,7 @@ double distance(double largest, double octaves, Rng& rng) {
 
 }  // namespace
 
-V3f PathPerturbation::turned(const V3f& w, Rng& rng) const {
+V3f PathPerturbation::rotated(const V3f& w, Rng& rng) const {
   const auto angle = static_cast<float>(distance(settings_.largest_angle, settings_.octaves, rng));
   const float phi = 2 * pi * rng.next();
   const float s = std::sin(angle);
@@ -38,9 +38,9 @@ double PathPerturbation::reach(const VertexPool& pool, const WholePath& path) co
   return settings_.largest_angle * length;
 }
 
-bool PathPerturbation::move_aside(const WholePath& path, PathBuilder& builder, Rng& rng) {
-  aside_ = distance(reach(builder.pool(), path), settings_.octaves, rng);
-  const auto r = static_cast<float>(aside_);
+bool PathPerturbation::shift_ray(const WholePath& path, PathBuilder& builder, Rng& rng) {
+  shift_ = distance(reach(builder.pool(), path), settings_.octaves, rng);
+  const auto r = static_cast<float>(shift_);
   const float phi = 2 * pi * rng.next();
   const V3f& w = path.edges.back().w;
   const V3f& x = builder.pool()[path.nodes.rbegin()[1].vertex].v.surface.x;
@@ -56,16 +56,16 @@ bool PathPerturbation::propose_from_eye(const WholePath& path, int start, PathBu
   builder.keep(path, start, k + 1);
   for (int i = start + 1;; ++i) {
     const PathNode& before = path.node(i - 1);
-    bool met = false;
+    bool found = false;
     if (before.delta) {
-      met = builder.follow_from_eye(before.transmitted);
+      found = builder.follow_from_eye(before.transmitted);
     } else if (i == 1) {
       const V2f at = moved(path.film, builder, rng);
-      met = builder.measure().on_film(at) && builder.look_through(at);
+      found = builder.measure().on_film(at) && builder.look_through(at);
     } else {
-      met = builder.go_from_eye(turned(path.edge(i - 1).w, rng));
+      found = builder.go_from_eye(rotated(path.edge(i - 1).w, rng));
     }
-    if (!met) return false;
+    if (!found) return false;
     last_ = i;
     if (i == k) return builder.end_on_emitter();
     if (!builder.eye_on_surface()) return false;
@@ -79,21 +79,21 @@ bool PathPerturbation::propose_from_eye(const WholePath& path, int start, PathBu
 bool PathPerturbation::propose_from_light(const WholePath& path, int start, PathBuilder& builder,
                                           Rng& rng) {
   from_eye_ = false;
-  aside_ = 0;
+  shift_ = 0;
   last_ = start - 1;
   if (path.node(start).delta || start == 1) return false;
   builder.keep(path, 0, start);
   for (int i = start - 1; i > 0; --i) {
     const PathNode& before = path.node(i + 1);
-    bool met = false;
+    bool found = false;
     if (before.delta) {
-      met = builder.follow_from_light(before.transmitted);
+      found = builder.follow_from_light(before.transmitted);
     } else if (builder.light_is_infinite()) {
-      met = move_aside(path, builder, rng);
+      found = shift_ray(path, builder, rng);
     } else {
-      met = builder.go_from_light(turned(-path.edge(i).w, rng));
+      found = builder.go_from_light(rotated(-path.edge(i).w, rng));
     }
-    if (!met) return false;
+    if (!found) return false;
     first_ = i;
     if (!path.node(i).delta && !path.node(i - 1).delta) {
       builder.keep_eye(path, i - 1);
@@ -105,9 +105,9 @@ bool PathPerturbation::propose_from_light(const WholePath& path, int start, Path
 
 long double PathPerturbation::reverse_ratio(const PathMeasure& measure, const VertexPool& pool,
                                             const WholePath& from, const WholePath& to) const {
-  if (aside_ > 0) {
-    // The distance is log-uniform: its density is the same both ways, where both are possible.
-    const double octave = std::log2(reach(pool, to) / aside_);
+  if (shift_ > 0) {
+    // The shift is log-uniform: its density is equal in both directions, if both are possible.
+    const double octave = std::log2(reach(pool, to) / shift_);
     if (!(octave >= 0 && octave < settings_.octaves)) return 0;
   }
   long double ratio = 1;

@@ -57,14 +57,14 @@ long double PathSpaceMutation::independent_density(const PathMeasure& measure,
   return lengths_.probability(k) / (k + 1) * measure.between(path, pool, 0, k + 1);
 }
 
-void PathSpaceMutation::see(Path& path, const Camera& camera, double scale) {
+void PathSpaceMutation::set_contribution(Path& path, const Camera& camera, double scale) {
   path.state.clear();
-  path.seen = 0;
+  path.pixel_weight = 0;
   camera.splat(path.film, [&](std::uint32_t pixel, float weight) {
     path.state.pixels.push_back({pixel, path.colour * static_cast<float>(scale * double(weight))});
-    path.seen += double(weight);
+    path.pixel_weight += double(weight);
   });
-  path.state.scalar = path.seen * scale;
+  path.state.scalar = path.pixel_weight * scale;
 }
 
 void PathSpaceMutation::evaluate(Chain& c, Workspace& workspace, Counters& counters) const {
@@ -87,10 +87,10 @@ bool PathSpaceMutation::propose(Chain& c, PathBuilder& builder) const {
     const auto contribution = static_cast<double>(c.proposed.luminance /
                                                   independent_density(measure, c.pool, c.proposed));
     if (!(contribution > 0) || !std::isfinite(contribution) || !builder.visible()) return false;
-    see(c.proposed, measure.camera(), contribution);
+    set_contribution(c.proposed, measure.camera(), contribution);
     return true;
   }
-  see(c.proposed, measure.camera(), 1);
+  set_contribution(c.proposed, measure.camera(), 1);
   const long double reverse =
       c.kind == Kind::independent ? independent_density(measure, c.pool, c.current) /
                                         independent_density(measure, c.pool, c.proposed)
@@ -98,12 +98,12 @@ bool PathSpaceMutation::propose(Chain& c, PathBuilder& builder) const {
           ? replacement.reverse_ratio(measure, c.pool, c.current, c.proposed)
           : perturbation.reverse_ratio(measure, c.pool, c.current, c.proposed);
   const auto ratio = static_cast<double>(c.proposed.target() / c.current.target() * reverse);
-  // A proposal that would hardly be accepted gets its shadow ray with a probability.
-  const double tested = std::min(1.0, ratio / settings_.least_tested);
-  if (!(ratio > 0) || !c.rng->decide(static_cast<float>(tested)) || !builder.visible()) {
+  // Russian roulette of the shadow ray of a proposal that would rarely be accepted.
+  const double test_probability = std::min(1.0, ratio / settings_.least_tested);
+  if (!(ratio > 0) || !c.rng->decide(static_cast<float>(test_probability)) || !builder.visible()) {
     return false;
   }
-  c.ratio = ratio / tested;
+  c.ratio = ratio / test_probability;
   return true;
 }
 

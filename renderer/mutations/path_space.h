@@ -11,9 +11,9 @@
 
 namespace lacuna {
 
-/// mutation: path_space. A state is a path itself, and proposals change some of its vertices (Veach
-/// and Guibas 1997; Veach 1997, ch. 11). The density that chains follow is the path's contribution
-/// per product area.
+/// mutation: path_space. A state is a path, and proposals change some of its vertices (Veach and
+/// Guibas 1997; Veach 1997, ch. 11). The chain's target density is the path's contribution per
+/// product area.
 class PathSpaceMutation {
  public:
   static constexpr std::size_t size = 16;
@@ -43,9 +43,10 @@ class PathSpaceMutation {
   enum class Kind : std::uint8_t { independent, bidirectional, lens, eye, light };
   struct Path : WholePath {
     ChainState state;
-    double seen = 0;  ///< sum of the weights of the pixels that see it: 1 but at the film's border
+    double pixel_weight =
+        0;  ///< sum of the filter weights of its pixels: 1 except at the film's border
     /// The target density of the chain, up to a factor.
-    long double target() const { return luminance * seen; }
+    long double target() const { return luminance * pixel_weight; }
   };
   struct Chain {
     VertexPool pool;
@@ -53,23 +54,23 @@ class PathSpaceMutation {
     double ratio = 0;
     Kind kind = Kind::independent;
     bool starting = false;
-    bool pending = false;  ///< `proposed` has vertices of its own
+    bool pending = false;  ///< `proposed` has new vertices
     Rng* rng = nullptr;
   };
 
   void evaluate(Chain& c, Workspace& workspace, Counters& counters) const;
-  /// Makes the proposal of `c`; false if there is none, or none that can be accepted.
+  /// Builds the proposal of `c`; false if there is none, or none that can be accepted.
   bool propose(Chain& c, PathBuilder& builder) const;
   bool build(const Chain& c, PathBuilder& builder, PartReplacement& replacement,
              PathPerturbation& perturbation) const;
   bool sample_anew(const Chain& c, PathBuilder& builder) const;
-  /// Density of a path as sample_anew() makes it.
+  /// Density with which sample_anew() samples a path.
   long double independent_density(const PathMeasure& measure, const VertexPool& pool,
                                   const WholePath& path) const;
   static void drop_proposal(Chain& c);
-  /// Gives back the vertices of `path` that `kept` does not have.
+  /// Returns the vertices of `path` that are not in `kept` to the pool.
   static void give_back(VertexPool& pool, const WholePath& path, const WholePath& kept);
-  static void see(Path& path, const Camera& camera, double scale);
+  static void set_contribution(Path& path, const Camera& camera, double scale);
 
   PathSpaceSettings settings_;
   ChainPaths paths_;

@@ -10,9 +10,9 @@
 
 namespace lacuna {
 
-/// Chains in primary sample space: a state is the random numbers that a pair of paths is sampled
-/// from, so that sampling, connecting and weighting are those of bidirectional path tracing.
-/// `Technique` says which strategies a point's control numbers choose.
+/// Chains in primary sample space: a state is the random numbers from which a pair of paths is
+/// sampled, so sampling, connecting and weighting are those of bidirectional path tracing.
+/// `Technique` maps a point's control numbers to strategies.
 template <class Technique>
 class PrimarySampleChains {
  public:
@@ -34,9 +34,9 @@ class PrimarySampleChains {
     if (rng.decide(static_cast<float>(settings_.large_steps))) return start(i, rng);
     Chain& c = chains_[i];
     c.kind = 1;
-    // All numbers move at one scale: the largest move decides whether a proposal is accepted, and
-    // smaller ones beside it would explore less. Where one of the two paths stays, the other meets
-    // the same light, or the same surface is lit in another way.
+    // All numbers move at one scale: the largest move determines acceptance, and smaller ones
+    // besides it would explore less. If one of the two paths is kept, the other reaches the same
+    // light, or the same surface is lit in another way.
     const int octave = static_cast<int>(rng.below(static_cast<std::uint64_t>(settings_.octaves)));
     const double distance = std::ldexp(settings_.step, -octave);
     enum { both, eye, light };
@@ -58,7 +58,7 @@ class PrimarySampleChains {
 
   const ChainState& current(std::size_t i) const { return chains_[i].current; }
   const ChainState& proposed(std::size_t i) const { return chains_[i].proposed; }
-  /// Proposals are symmetric.
+  /// Proposals are symmetric, so only target densities remain.
   double acceptance_ratio(std::size_t i) const {
     const Chain& c = chains_[i];
     return c.proposed.scalar / c.current.scalar;
@@ -84,8 +84,8 @@ class PrimarySampleChains {
   std::array<Chain, size> chains_;
 };
 
-/// mutation: primary_sample. A point is all ways to join its two paths (Kelemen et al. 2002; Noel
-/// 2015, 4.6).
+/// mutation: primary_sample. A point represents all connections of its two paths (Kelemen et al.
+/// 2002; Noel 2015, 4.6).
 struct AllTechniques {
   static WantedPaths choose(const ChainPaths& paths, Rng&) {
     const int most = paths.lengths.max_depth;
@@ -93,9 +93,9 @@ struct AllTechniques {
   }
 };
 
-/// mutation: multiplexed. A point is one path, of one length by one strategy, which are two more
-/// numbers of the point (Hachisuka, Kaplanyan and Dachsbacher 2014, "Multiplexed Metropolis light
-/// transport").
+/// mutation: multiplexed. A point represents one path, of one length by one strategy, both selected
+/// by further numbers of the point (Hachisuka, Kaplanyan and Dachsbacher 2014, "Multiplexed
+/// Metropolis light transport").
 struct OneTechnique {
   static WantedPaths choose(const ChainPaths& paths, Rng& control) {
     const LengthChoice lengths(paths);

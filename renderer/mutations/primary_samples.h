@@ -9,18 +9,19 @@ namespace lacuna {
 
 /// The random words of one stream of a Markov chain: a point in primary sample space (Kelemen et
 /// al. 2002, "A simple and robust mutation strategy for the Metropolis light transport algorithm";
-/// Noel 2015, 4.6). A proposal is read as a stream of random numbers, and then kept or forgotten.
+/// Noel 2015, 4.6). A proposal is read as a stream of random numbers, and then accepted or dropped.
 ///
-/// Words beyond those that the kept point was read to are independent of it, and are drawn when
+/// Words beyond those read from the current point are independent of it, and are generated when
 /// they are read.
 class PrimarySamples final : public RandomWords {
  public:
-  /// A new point, independent of the one that is kept: a large step. `rng` outlives the reading.
+  /// Proposes a new point, independent of the current one: a large step. `rng` must stay valid
+  /// while the proposal is read.
   void propose_fresh(Rng& rng) { propose(rng, 0, 0); }
-  /// A point near the one that is kept: each number moves by at most `distance`, in [0, 1), on the
-  /// unit torus.
+  /// Proposes a point near the current one: each number moves by at most `distance`, in [0, 1), on
+  /// the unit torus.
   void propose_near(Rng& rng, double distance) { propose(rng, kept_, distance); }
-  /// Keeps the proposal, as far as it was read.
+  /// The proposal, as far as it was read, becomes the current point.
   void accept() {
     std::swap(current_, proposed_);
     kept_ = read_;
@@ -47,7 +48,7 @@ class PrimarySamples final : public RandomWords {
     read_ = 0;
   }
 
-  /// Uniform in both directions.
+  /// A uniform offset in both directions, up to distance_.
   std::uint32_t offset(std::uint32_t by) const {
     const auto distance =
         static_cast<std::uint32_t>((std::uint64_t{by} << 1 & 0xffffffffU) * distance_ >> 32);

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// All mutations. A new one is a row here and an alternative of MutationSettings.
+/// All mutations. A new mutation is a row here and an alternative of MutationSettings.
 using MutationRegistry = Registry<Entry<MultiplexedSettings, MultiplexedMutation>,
                                   Entry<PrimarySampleSettings, PrimarySampleMutation>,
                                   Entry<PathSpaceSettings, PathSpaceMutation>>;

@@ -8,8 +8,7 @@
 
 namespace lacuna {
 
-/// A vertex of a whole path. It belongs to the current path of a chain, to the proposed one, or to
-/// both.
+/// A vertex of a whole path: of a chain's current path, of its proposed path, or of both.
 struct PathVertex {
   Vertex v;
   EmitterPoint emitter;  ///< of the last vertex of a path
@@ -37,15 +36,15 @@ class VertexPool {
   std::vector<std::uint32_t> free_;
 };
 
-/// A vertex as one path passes it.
+/// A vertex as traversed by one path.
 struct PathNode {
   std::uint32_t vertex = 0;  ///< in the VertexPool
-  bool delta = false;        ///< scatters by a delta lobe
-  bool transmitted = false;  ///< of a delta lobe
+  bool delta = false;        ///< whether it scatters by a delta lobe
+  bool transmitted = false;  ///< for a delta lobe
 };
 
-/// The edge from node i to node i + 1. The factors turn densities per steradian, of directions
-/// along the edge, into densities of the vertex that the edge leads to (to_area()).
+/// The edge from node i to node i + 1. The factors convert solid-angle densities of directions
+/// along the edge into densities of the vertex that the edge leads to (to_area()).
 struct PathEdge {
   V3f w{0, 0, 0};      ///< unit, towards the light
   float to_light = 0;  ///< of node i + 1
@@ -54,12 +53,13 @@ struct PathEdge {
 
 /// A path x_0 ... x_k with x_0 at the eye and x_k on an emitter, and its contribution: f of the
 /// path integral (Veach 1997, sec. 8.1), luminance * colour, for radiance over the product area
-/// measure. A delta lobe counts by its value (DeltaLobe), a vertex at infinity per steradian.
+/// measure. A delta lobe contributes its value (DeltaLobe); a vertex at infinity is measured per
+/// steradian.
 struct WholePath {
   std::vector<PathNode> nodes;
   std::vector<PathEdge> edges;
-  V2f film{0, 0};             ///< position, in pixels
-  Rgb colour{0, 0, 0};        ///< of luminance 1
+  V2f film{0, 0};             ///< position, pixels
+  Rgb colour{0, 0, 0};        ///< with luminance 1
   long double luminance = 0;  ///< a product of a thousand densities exceeds the range of double
 
   int edge_count() const { return static_cast<int>(nodes.size()) - 1; }

@@ -30,7 +30,8 @@ const CameraData& choose_camera(const SceneData& scene, const std::string& name,
 CameraData look_at(const CameraSettings& s, const V3d& origin) {
   const auto frame = frame_of(s);
   if (!frame) {
-    throw std::invalid_argument("the camera's target is its position, or up is along its view");
+    throw std::invalid_argument(
+        "the camera's target is its position, or up is parallel to the view direction");
   }
   const auto& [x, y, z] = *frame;
   const V3d p = V3d(s.position[0], s.position[1], s.position[2]) - origin;
@@ -59,8 +60,8 @@ Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter
 }
 
 Ray Camera::sample(const V2i& pixel, const V2f& u) const {
-  // From the pixel's upper left corner: the box ends at its edges, the tent one pixel from its
-  // centre.
+  // Relative to the pixel's upper left corner: the box ends at the pixel's edges, the tent one
+  // pixel from its centre.
   const auto place = [&](float x) {
     if (filter_ == PixelFilter::box) return x;
     return x < 0.5F ? std::sqrt(2 * x) - 0.5F : 1.5F - std::sqrt(2 * (1 - x));

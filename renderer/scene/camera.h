@@ -10,48 +10,48 @@
 
 namespace lacuna {
 
-/// The camera called `name` (empty: the first). `file` names the scene in errors. Throws
-/// SceneError: there is none of that name, or none at all.
+/// The camera of that `name`, or the first if it is empty. `file` names the scene in errors. Throws
+/// SceneError if no camera has that name, or if there is none at all.
 const CameraData& choose_camera(const SceneData& scene, const std::string& name,
                                 const std::string& file);
 
-/// A camera of the job's own, without a name. `origin` is SceneData's. Throws std::invalid_argument
-/// where it has no frame (frame_of()).
+/// A camera defined by the job, without a name. `origin`: SceneData::origin. Throws
+/// std::invalid_argument if it has no frame (frame_of()).
 CameraData look_at(const CameraSettings& s, const V3d& origin);
 
-/// The rectangle of a larger picture that a film shows: `size` pixels from `first` on.
+/// The part of a larger picture that a film covers: `size` pixels from pixel `first`.
 struct Crop {
   V2i first{0, 0};
   V2i size{0, 0};
 };
 
-/// A pinhole camera with a film of `width` x `height` square pixels; the vertical field of view is
-/// the glTF camera's, the horizontal one follows from the film.
+/// A pinhole camera with a film of `width` x `height` square pixels. The vertical field of view is
+/// the glTF camera's; the horizontal one follows from the film.
 class Camera {
  public:
-  /// With a `crop`, the film is that part of a larger picture of the same view.
+  /// With `crop`, the film is that part of a larger picture of the same view.
   Camera(const CameraData& data, int width, int height, PixelFilter filter = PixelFilter::box,
          const std::optional<Crop>& crop = {});
 
-  /// The ray of a sample of `pixel`, for `u` uniform in [0, 1)^2. The point on the film is sampled
-  /// from the pixel filter, so all samples have equal weight and pixels are independent (Ernst,
+  /// The ray of a sample of `pixel`, for `u` uniform in [0, 1)^2. The film position is sampled from
+  /// the pixel filter, so all samples have equal weight and pixels are independent (Ernst,
   /// Stamminger and Greiner 2006, "Filter Importance Sampling").
   Ray sample(const V2i& pixel, const V2f& u) const;
 
   /// The ray through film position (x, y), in pixels from the upper left corner. `d` is unit.
   Ray ray(float x, float y) const;
 
-  /// Density per steradian, at unit `w` in front of the camera, of one sample per pixel, uniform
-  /// over the film: the number of pixels per steradian. It is also the importance of the eye: a
-  /// light path that ends at the eye contributes its radiance times density() times the weights of
+  /// Solid-angle density, at unit `w` in front of the camera, of one sample per pixel, uniform over
+  /// the film: the number of pixels per steradian. It is also the importance of the eye: a light
+  /// path connected to the eye contributes its radiance times density() times the weights of
   /// splat().
   Pdf<SolidAngle> density(const V3f& w) const;
 
-  /// The film position, in pixels, of light that arrives against unit `w` (away from the eye); none
-  /// if no pixel sees it.
+  /// The film position, in pixels, of light that arrives from unit `w` (away from the eye); none
+  /// outside the film.
   std::optional<V2f> project(const V3f& w) const;
 
-  /// Calls `pixel(index, weight)` for the pixels whose filter reaches film position `at`: index in
+  /// Calls `pixel(index, weight)` for the pixels whose filter covers film position `at`: index in
   /// the film, top row first, weight > 0. The filter's integral over the film is 1.
   template <class Pixel>
   void splat(const V2f& at, Pixel&& pixel) const {
@@ -69,10 +69,10 @@ class Camera {
     }
   }
 
-  /// Of the film, in pixels.
+  /// Size of the film, pixels.
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Pixels beyond the film that the filter of its pixels reaches.
+  /// The distance, in pixels, to which the filter reaches beyond the film.
   float margin() const { return filter_ == PixelFilter::box ? 0.0F : 0.5F; }
   const V3f& position() const { return position_; }
   const V3f& forward() const { return forward_; }
@@ -83,7 +83,7 @@ class Camera {
     return static_cast<std::uint32_t>(p.y) * static_cast<std::uint32_t>(width_) +
            static_cast<std::uint32_t>(p.x);
   }
-  /// Of the distance from a pixel's upper left corner.
+  /// The tent filter at distance `x` from the pixel's upper left corner.
   static float tent(float x) { return std::max(0.0F, 1 - std::abs(x - 0.5F)); }
 
   int width_, height_;

@@ -5,14 +5,14 @@
 namespace lacuna {
 namespace {
 
-/// The surface beside a point.
+/// The surface of another mesh that is too close to a point.
 struct Neighbour {
   std::uint32_t mesh = 0;
   double gap = 0;    ///< distance between the point and its plane
-  float offset = 0;  ///< at which rays start off it or off the point's own surface
+  float offset = 0;  ///< at which rays start from it, or from the point's own surface
 };
 
-/// The largest distance from which a neighbour can matter.
+/// An upper bound of the offset of rays: surfaces further away than this are not tested.
 float largest_offset(const Scene& scene) {
   float largest = 0;
   const SceneData& data = scene.data();
@@ -35,7 +35,7 @@ std::optional<Neighbour> neighbour(const Scene& scene, const TriangleShape& own,
     return std::nullopt;
   }
   const TriangleShape& other = scene.triangle(hit.mesh, hit.triangle);
-  if (dot(other.ng, own.ng) <= 0) return std::nullopt;  // as a box and what it stands on
+  if (dot(other.ng, own.ng) <= 0) return std::nullopt;  // both face the gap: a box on a floor
   const V3d normal = other.normal();
   const double gap = std::abs((V3d(x) - V3d(other.corners[0])).dot(normal)) / normal.length();
   const float offset = std::max(own_offset, ray_offset(x, other.ng, other.plane_error));
@@ -69,9 +69,8 @@ std::vector<std::string> close_surfaces(const Scene& scene) {
   }
   if (close == 0) return {};
   return {
-      fmt::format("{} of {} triangles that were looked at lie closer to another mesh than rays "
-                  "resolve: shadows "
-                  "and light between them are lost; the first is of mesh {}",
+      fmt::format("{} of {} tested triangles lie closer to another mesh than rays resolve:  "
+                  "shadows and light between them are lost; the first is of mesh {}",
                   close, looked_at, first)};
 }
 

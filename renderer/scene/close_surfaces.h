@@ -7,10 +7,10 @@
 
 namespace lacuna {
 
-/// Warns of meshes that lie closer to another one, on the side that both face, than the distance at
-/// which rays start off its surface (ray_offset.h): light passes between them, and a shadow is
-/// lost. On a tilted triangle that distance is about 2^-22 of its size, elsewhere about 2^-22 of
-/// the coordinates. Looks at some triangles of each mesh, at their centres. One text, or none.
+/// Warns of meshes that lie closer to another mesh, on the side that both face, than the offset at
+/// which rays start (ray_offset.h): light leaks between them, and a shadow is lost. The offset is
+/// about 2^-22 of the size of a tilted triangle, otherwise about 2^-22 of the coordinates. Tests
+/// the centres of some triangles of each mesh. Returns at most one text.
 std::vector<std::string> close_surfaces(const Scene& scene);
 
 }  // namespace lacuna

@@ -6,11 +6,11 @@ namespace lacuna {
 
 namespace {
 
-/// The points of the film that camera rays go through, and how many there are.
+/// The number of camera rays, `across` in each dimension of the film.
 constexpr int across = 64, ray_count = across * across;
 
-/// How often a kind of surface is seen, and an example.
-struct Seen {
+/// How many rays hit a kind of surface, and an example.
+struct SurfaceCount {
   int count = 0;
   std::string example;
 
@@ -24,7 +24,7 @@ struct Seen {
 }  // namespace
 
 std::vector<std::string> missing_reflections(const Scene& scene, const Camera& camera) {
-  Seen black, coated;
+  SurfaceCount black, coated;
   for (int i = 0; i < ray_count; ++i) {
     const auto at = [](int k, int size) {
       return (static_cast<float>(k) + 0.5F) / across * static_cast<float>(size);

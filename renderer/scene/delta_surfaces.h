@@ -8,9 +8,9 @@
 
 namespace lacuna {
 
-/// Warns of mirrors, clear glass and smooth coats that the camera sees, for methods whose light
-/// paths are connected to the eye: no connection follows a delta lobe, so what such a surface shows
-/// is missing. A grid of camera rays is looked at. Requires SceneNeeds::materials.
+/// Warns of mirrors, clear glass and smooth coats that the camera sees, for methods that connect
+/// light paths to the eye: delta lobes cannot be connected, so these reflections are missing. Tests
+/// a grid of camera rays. Requires SceneNeeds::materials.
 std::vector<std::string> missing_reflections(const Scene& scene, const Camera& camera);
 
 }  // namespace lacuna

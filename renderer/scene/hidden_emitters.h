@@ -7,11 +7,10 @@
 
 namespace lacuna {
 
-/// Warns of emitters that another surface lies in the plane of, or so close to that rays which
-/// start beside surfaces do not tell them apart: samples of the emitter shine, rays meet the other
-/// surface, and methods disagree. A few points of at most 2^14 emitting triangles, spread over all,
-/// are looked at from a little in front; triangles too small for that are left out. Only where
-/// SceneNeeds::emission was asked for.
+/// Warns of emitters with another surface in their plane, or so close to it that offset rays cannot
+/// separate them: samples of the emitter contribute, rays hit the other surface, and methods
+/// disagree. Tests a few points, from a small distance, of at most 2^14 emitting triangles spread
+/// over all; triangles too small for the test are skipped. Requires SceneNeeds::emission.
 std::vector<std::string> hidden_emitters(const Scene& scene);
 
 }  // namespace lacuna

@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// Applies `change` to the scene's materials of that name. `file`: of the scene, for messages.
-/// Throws SceneError if no material has that name.
+/// Applies `change` to all materials of its name. `file` names the scene in messages. Throws
+/// SceneError if no material has that name.
 void change_material(SceneData& scene, const MaterialChange& change, const std::string& file);
 
 }  // namespace lacuna

@@ -22,8 +22,7 @@ std::vector<std::string> lights_in_surfaces(const Scene& scene) {
   if (count == 0) return {};
   return {fmt::format(
       "{} of {} lights lie exactly in a surface, the first, \"{}\", in mesh \"{}\": they light "
-      "both "
-      "of its sides, and the surface itself is not lit by them; move them off it",
+      "both of its sides, but not the surface itself; move them off it",
       count, scene.data().lights.size(), first->name, mesh_name(scene, *first->contact))};
 }
 
@@ -47,8 +46,8 @@ std::vector<std::string> look_back(const Camera& camera, const SurfaceContact& l
       for (const float y : {0.0F, static_cast<float>(camera.height())}) {
         if (dot(camera.ray(x, y).d, n) * side >= 0) continue;
         return {fmt::format(
-            "the camera lies exactly in mesh \"{}\" and looks along it: part of the picture shows "
-            "that surface alone, from beside it; move the camera off it",
+            "the camera lies exactly in mesh \"{}\" and looks along its plane: part of the picture "
+            "shows only that surface, from almost no distance; move the camera off it",
             mesh_name(scene, left))};
       }
     }

@@ -15,8 +15,8 @@ namespace lacuna {
 
 namespace {
 
-/// Larger textures are decoded one at a time: while it is decoded, one takes several times the
-/// memory that it keeps.
+/// Larger textures are decoded one at a time: decoding takes several times the memory of the
+/// result.
 constexpr std::uint64_t max_small_texels = std::uint64_t{1} << 24;
 
 std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {

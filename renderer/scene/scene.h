@@ -13,13 +13,13 @@
 
 namespace lacuna {
 
-/// The parts of a scene that an integrator needs; the others are not built. Alpha masks are always
+/// The parts of a scene that an integrator needs; other parts are not built. Alpha masks are always
 /// built, because they affect visibility.
 struct SceneNeeds {
   bool materials = false;   ///< scattering: textures of base colour, roughness, ...
   bool emission = false;    ///< emitters and the environment
   bool space = false;       ///< the analysis of the empty space
-  bool light_tree = false;  ///< selection of emitters for a receiver; with emission
+  bool light_tree = false;  ///< selection of emitters for a receiver; requires `emission`
 };
 
 /// The environment light of a job.
@@ -32,15 +32,15 @@ struct EnvironmentImage {
 /// A scene ready to render. Immutable.
 class Scene {
  public:
-  /// Decodes the textures of the `needs`, builds the ray caster and, if needed, the emitters.
-  /// Throws SceneError, also if these textures have more than max_scene_texels together.
+  /// Decodes the needed textures, builds the ray caster and, if needed, the emitters. Throws
+  /// SceneError, also if these textures have more than max_scene_texels together.
   Scene(SceneData data, const SceneNeeds& needs, const std::optional<EnvironmentImage>& environment,
         const ThreadPool& pool);
 
   const SceneData& data() const { return *data_; }
   /// The surface at a hit of rays().
   Surface surface(const Ray& ray, const Hit& hit) const { return {*data_, triangles_, ray, hit}; }
-  /// The same where its point `x` is known already.
+  /// The same if the point `x` has been computed.
   Surface surface(const Hit& hit, const V3f& x) const { return {*data_, triangles_, hit, x}; }
   /// The geometry of a triangle.
   const TriangleShape& triangle(std::uint32_t mesh, std::uint32_t triangle) const {
@@ -57,12 +57,12 @@ class Scene {
   int textures_decoded() const { return textures_decoded_; }
   std::uint64_t texture_bytes() const;
 
-  /// Radiance that leaves `s` along unit `wo`.
+  /// Radiance that leaves `s` in unit direction `wo`.
   Rgb emitted(const Surface& s, const V3f& wo) const {
     if (!s.emits || (!s.emits_behind && dot(wo, s.ng) <= 0)) return {0, 0, 0};
     return emission(material(s), data_->textures, s.uv);
   }
-  /// Constructs the BSDF at `s` in `place`, because it is too large to be moved. Requires
+  /// Constructs the BSDF at `s` in `place`, because a move would be slow. Requires
   /// SceneNeeds::materials.
   void make_bsdf(const Surface& s, std::optional<Bsdf>& place) const {
     if (const auto& lobes = uniform_lobes_[s.material]) {
@@ -76,7 +76,7 @@ class Scene {
     if (!uniform_lobes_[s.material]) prefetch_textures(material(s), data_->textures, s.uv);
   }
   const Material& material(const Surface& s) const { return data_->materials[s.material]; }
-  /// The surfaces that the point `x` lies in; none: it is free.
+  /// The surfaces that contain the point `x`; none if it lies in no surface.
   std::optional<SurfaceContact> find_contact(const V3f& x) const;
 
  private:
@@ -88,7 +88,8 @@ class Scene {
   Bounds bounds_;
   int textures_decoded_ = 0;
   TriangleTable triangles_;
-  std::vector<std::optional<Lobes>> uniform_lobes_;  // of materials whose scattering has no texture
+  std::vector<std::optional<Lobes>>
+      uniform_lobes_;  // of each material; none if a texture affects its scattering
   RayCaster rays_;
   std::unique_ptr<EmitterSet> emitters_;
 };

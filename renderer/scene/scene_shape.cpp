@@ -9,7 +9,8 @@
 namespace lacuna {
 namespace {
 
-/// The centre of a triangle, and points close to its corners: a large light may illuminate more
+/// Adds a triangle's centre and points near its corners: a large light may illuminate several
+/// rooms.
 /// than one room.
 void add_emitter(DomainSeeds& seeds, const std::array<V3d, 3>& corners, bool both_sides) {
   const V3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);

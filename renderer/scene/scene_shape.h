@@ -8,14 +8,15 @@
 
 namespace lacuna {
 
-/// All triangles of a scene for the analysis of its empty space, including lights, glass and masked
-/// surfaces.
+/// All triangles of a scene, for the analysis of its empty space, including lights, glass and
+/// masked surfaces.
 TriangleSoup triangle_soup(const SceneData& scene);
 
-/// SceneData::geometry_hash as 16 hexadecimal digits: the key of all analysis.
+/// SceneData::geometry_hash as 16 hexadecimal digits: the key of all analyses.
 std::string geometry_key(const SceneData& scene);
 
-/// A key of the occluders: the geometry, and all bytes of the scene if it has alpha masks.
+/// A key of the occluders: the hash of the geometry, or of the whole content if there are alpha
+/// masks.
 std::string occluder_key(const SceneData& scene);
 
 /// The seeds of the domain: the camera, points on every emitting side of every emitting triangle,

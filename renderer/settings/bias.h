@@ -4,8 +4,8 @@
 
 namespace lacuna {
 
-/// Whether the expected picture differs from the radiance of the scene. Such settings have a member
-/// `bool biased() const`.
+/// Whether the expected picture differs from the radiance of the scene. Biased settings have a
+/// member `bool biased() const`.
 template <class... Ts>
 bool biased(const std::variant<Ts...>& settings) {
   return std::visit(
@@ -17,7 +17,7 @@ bool biased(const std::variant<Ts...>& settings) {
 }
 
 /// Whether the picture of biased settings converges to the radiance, because the bias of an
-/// iteration vanishes with its number. Such settings have a member `bool consistent() const`.
+/// iteration vanishes with its index. Such settings have a member `bool consistent() const`.
 template <class... Ts>
 bool consistent(const std::variant<Ts...>& settings) {
   return std::visit(

@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// A camera of the job's own, in the coordinates of the scene's file.
+/// A camera defined by the job, in the coordinates of the scene's file.
 struct CameraSettings {
   std::array<double, 3> position{0, 0, 0};
   std::array<double, 3> target{0, 0, -1};
@@ -21,30 +21,30 @@ struct CameraSettings {
 template <class V>
 void describe(V& v, CameraSettings& s) {
   v("position", s.position,
-    {.doc = "where the camera is, in the coordinates of the scene's file",
+    {.doc = "position of the camera, in the coordinates of the scene's file",
      .min = -1e15,
      .max = 1e15,
      .required = true});
   v("target", s.target,
-    {.doc = "a point in the middle of the picture", .min = -1e15, .max = 1e15, .required = true});
+    {.doc = "the point at the centre of the picture", .min = -1e15, .max = 1e15, .required = true});
   v("up", s.up,
-    {.doc = "a direction that is upright in the picture, not along the view",
+    {.doc = "a direction that points up in the picture, not parallel to the view direction",
      .min = -1e15,
      .max = 1e15});
   v("fov", s.fov, {.doc = "vertical field of view", .min = 0.01, .max = 179, .unit = "degrees"});
 }
 
-/// The unit axes of a camera: right, up, and against the view.
+/// The unit axes of a camera: right, up, and opposite to the view direction.
 struct CameraFrame {
   Imath::V3d right, up, back;
 };
 
-/// None where position and target coincide, or `up` is 0 or lies along the view.
+/// None if position and target coincide, or if `up` is 0 or parallel to the view direction.
 inline std::optional<CameraFrame> frame_of(const CameraSettings& s) {
   const auto vector = [](const std::array<double, 3>& v) { return Imath::V3d(v[0], v[1], v[2]); };
   const Imath::V3d position = vector(s.position), target = vector(s.target);
   const Imath::V3d back = position - target;
-  // Neighbouring coordinates are this far apart, about.
+  // The spacing of doubles at these coordinates, approximately.
   const double grain = 0x1p-50 * std::max(position.length(), target.length());
   if (!(back.length() > grain)) return {};
   CameraFrame f;

@@ -31,11 +31,11 @@ template <>
 struct EnumTable<LightSides> {
   static constexpr std::array<EnumValue<LightSides>, 2> values{{
       {LightSides::facing, "facing", "those that scatter towards the node or record"},
-      {LightSides::both, "both", "all, including those that face away from it"},
+      {LightSides::both, "both", "all, including those that face away"},
   }};
 };
 
-/// How it is decided which light vertices a node of the skeleton sees.
+/// How visibility between a skeleton node and light vertices is determined.
 enum class NodeVisibilityTest { rays, node_maps };
 
 template <>
@@ -43,22 +43,22 @@ struct EnumTable<NodeVisibilityTest> {
   static constexpr std::array<EnumValue<NodeVisibilityTest>, 2> values{{
       {NodeVisibilityTest::rays, "rays", "by a shadow ray to each, in each iteration"},
       {NodeVisibilityTest::node_maps, "node_maps",
-       "by a cube map of depths around the node, made once and kept on disk (Noel 2015, 11.6). "
-       "Wrong where an edge passes between texels; only probabilities depend on it"},
+       "by a cube map of depths around the node, rendered once and stored on disk (Noel 2015, "
+       "11.6). Errors at edges between texels affect probabilities only, not the expected picture"},
   }};
 };
 
-/// The settings that all connection strategies except `paired` have in common.
+/// Settings common to all connection strategies except `paired`.
 struct ResamplingSettings {
   int light_paths = 1024;
-  // As published they are otherwise, see their tables:
+  // These differ from the published values, see their tables:
   int count_as = 8;
   double splat_paths = 0.25;
   double roulette = 0.3;
   bool operator==(const ResamplingSettings&) const = default;
 };
 
-/// `published_count`: what `count_as` is as published.
+/// `published_count`: the published value of `count_as`.
 template <class V>
 void describe_resampling(V& v, ResamplingSettings& s, std::string_view published_count = "0") {
   v("light_paths", s.light_paths,
@@ -66,27 +66,23 @@ void describe_resampling(V& v, ResamplingSettings& s, std::string_view published
      .min = 1,
      .max = 1 << 16});
   v("splat_paths", s.splat_paths,
-    {.doc = "light paths per iteration that are connected to the eye (t = 1), as a share of the "
-            "pixels; never fewer than light_paths",
+    {.doc = "light paths per iteration that are connected to the eye (t = 1), as a fraction of the "
+            "pixels; at least light_paths",
      .min = 0,
      .max = 16,
      .published = "1"});
   v("count_as", s.count_as,
-    {.doc =
-         "number of samples n_s that MIS weights assume for connections to resampled light paths "
-         "of "
-         "two or more vertices (s >= 2); for s = 1, a point on an emitter, they assume 1. 0: both "
-         "are light_paths (Noel 2015, 11.5)",
+    {.doc = "number of samples n_s that MIS weights assume for connections to resampled light "
+            "paths of two or more vertices (s >= 2); for s = 1, a point on an emitter, they assume "
+            "1. 0: light_paths in both cases (Noel 2015, 11.5)",
      .min = 0,
      .max = 1 << 16,
      .published = published_count});
   v("roulette", s.roulette,
-    {.doc =
-         "Russian roulette of connections: a connection is made with a probability proportional to "
-         "the root mean square contribution of earlier connections of the same length in the same "
-         "cell of the empty space. The probability is 1 from this share of the mean contribution "
-         "of "
-         "all connections of a path in the tile on. 0: all connections are made",
+    {.doc = "Russian roulette of connections: a connection is made with a probability proportional "
+            "to the root mean square contribution of earlier connections of the same length in the "
+            "same cell of the empty space. The probability reaches 1 at this fraction of the mean "
+            "contribution of all connections of a path in the tile. 0: all connections are made",
      .min = 0,
      .max = 1,
      .published = "0"});
@@ -96,9 +92,8 @@ void describe_resampling(V& v, ResamplingSettings& s, std::string_view published
 struct PairedSettings {
   static constexpr std::string_view name = "paired";
   static constexpr std::string_view doc =
-      "every eye path is connected to a light path of its own and, at each vertex, to a new point "
-      "on "
-      "an emitter";
+      "every eye path is connected to its own light path and, at each vertex, to a new point on an "
+      "emitter";
   EmitterChoice emitters = EmitterChoice::automatic;
   bool operator==(const PairedSettings&) const = default;
 };
@@ -111,7 +106,7 @@ void describe(V& v, PairedSettings& s) {
 struct UniformSettings : ResamplingSettings {
   static constexpr std::string_view name = "uniform";
   static constexpr std::string_view doc =
-      "for each length, one of the shared light vertices, all equally probable";
+      "for each path length, one of the shared light vertices, all with equal probability";
   bool operator==(const UniformSettings&) const = default;
 };
 template <class V>
@@ -130,7 +125,7 @@ struct SkeletonConnectionsSettings : ResamplingSettings {
   NodeVisibilityTest node_visibility = NodeVisibilityTest::rays;
   int map_size = node_map_size;
   bool unshadowed = true;
-  Combination combination = Combination::mixture;  // as published it is otherwise
+  Combination combination = Combination::mixture;  // differs from the published value
   LightSides sides = LightSides::facing;
   bool operator==(const SkeletonConnectionsSettings&) const = default;
 };
@@ -138,9 +133,8 @@ template <class V, class S>
 void describe_acceptance(V& v, S& s) {
   v("acceptance", s.acceptance,
     {.doc =
-         "a node has distributions if at least this times the mean number of eye vertices of all "
-         "nodes belonged to it in earlier iterations; elsewhere light vertices are sampled "
-         "uniformly",
+         "a node has distributions if in earlier iterations its number of eye vertices was at "
+         "least this times the mean over all nodes; elsewhere light vertices are sampled uniformly",
      .min = 0,
      .max = 1e6});
 }
@@ -151,7 +145,8 @@ void describe(V& v, SkeletonConnectionsSettings& s) {
   v("visible", s.visible,
     {.doc = "distribution V: throughput over squared distance of the light vertices that the node "
             "sees (eq. 188)"});
-  v("node_visibility", s.node_visibility, {.doc = "how V decides what the node sees"});
+  v("node_visibility", s.node_visibility,
+    {.doc = "how V determines which light vertices the node sees"});
   describe_node_map_size(v, s.map_size);
   v("unshadowed", s.unshadowed,
     {.doc = "distribution U: the same for all light vertices, without visibility (eq. 189)"});
@@ -171,18 +166,19 @@ struct ImportanceCacheSettings : ResamplingSettings {
   bool full = true;
   bool unshadowed = false;
   bool bounded = false;
-  Combination combination = Combination::mixture;  // as published it is otherwise
+  Combination combination = Combination::mixture;  // differs from the published value
   bool operator==(const ImportanceCacheSettings&) const = default;
 };
 template <class V, class S>
 void describe_records(V& v, S& s) {
   v("record_density", s.record_density,
-    {.doc = "eye paths whose vertices become records, as a share of the pixels",
+    {.doc = "eye paths whose vertices become records, as a fraction of the pixels",
      .min = 0,
      .max = 0.1,
      .above_min = true});
   v("neighbours", s.neighbours,
-    {.doc = "nearest records of an eye vertex; one of them, at random, samples the light vertices",
+    {.doc = "number of nearest records of an eye vertex; one of them, selected at random, samples "
+            "the light vertices",
      .min = 1,
      .max = 64});
 }
@@ -193,8 +189,8 @@ void describe(V& v, ImportanceCacheSettings& s) {
   v("full", s.full, {.doc = "distribution F: the contribution to the record, with visibility"});
   v("unshadowed", s.unshadowed, {.doc = "distribution U: the same without visibility"});
   v("bounded", s.bounded,
-    {.doc = "distribution B: without visibility, the record's BSDF and the distance, which hold "
-            "only at the record itself"});
+    {.doc = "distribution B: without visibility, the record's BSDF and the distance, which are "
+            "valid only at the record itself"});
   v("combination", s.combination,
     {.doc = "how F, U, B and the uniform distribution C are combined", .published = "\"max\""});
 }
@@ -203,10 +199,10 @@ void describe(V& v, ImportanceCacheSettings& s) {
 struct ProbabilisticConnectionsSettings : ResamplingSettings {
   static constexpr std::string_view name = "probabilistic";
   static constexpr std::string_view doc =
-      "light vertices of any length for each eye vertex, drawn by what they give to records on "
-      "surfaces, MIS weight included (Popov et al. 2015)";
+      "for each eye vertex, light vertices of any path length, sampled in proportion to their "
+      "contributions to records on surfaces, including MIS weights (Popov et al. 2015)";
 
-  /// What an iteration spends on distributions grows with records times light paths.
+  /// The cost of an iteration's distributions is proportional to records times light paths.
   ProbabilisticConnectionsSettings() { light_paths = 256; }
 
   double record_density = ImportanceCacheSettings{}.record_density;
@@ -221,9 +217,11 @@ void describe(V& v, ProbabilisticConnectionsSettings& s) {
   describe_resampling(v, s, "1");
   describe_records(v, s);
   v("draws", s.draws,
-    {.doc = "connections of an eye vertex, to light vertices of any length", .min = 1, .max = 64});
+    {.doc = "connections per eye vertex, to light vertices of any path length",
+     .min = 1,
+     .max = 64});
   v("uniform", s.uniform,
-    {.doc = "share of the draws in which all light vertices are equally probable",
+    {.doc = "fraction of the samples for which all light vertices are equally probable",
      .min = 0.01,
      .max = 1});
   v("weighted", s.weighted,
@@ -231,7 +229,7 @@ void describe(V& v, ProbabilisticConnectionsSettings& s) {
 }
 
 /// connections: hybrid. Records are dense on visible surfaces and sparse elsewhere; skeleton nodes
-/// are everywhere.
+/// cover all of the empty space.
 struct HybridSettings : ResamplingSettings {
   static constexpr std::string_view name = "hybrid";
   static constexpr std::string_view doc =
@@ -242,7 +240,7 @@ struct HybridSettings : ResamplingSettings {
   double record_density = ImportanceCacheSettings{}.record_density;
   int neighbours = ImportanceCacheSettings{}.neighbours;
   double acceptance = SkeletonConnectionsSettings{}.acceptance;
-  Combination combination = Combination::mixture;  // as published it is otherwise
+  Combination combination = Combination::mixture;  // differs from the published value
   bool operator==(const HybridSettings&) const = default;
 
   ImportanceCacheSettings cache() const {
@@ -263,7 +261,7 @@ template <class V>
 void describe(V& v, HybridSettings& s) {
   describe_resampling(v, s);
   v("cached_depth", s.cached_depth,
-    {.doc = "eye vertices up to this many edges from the eye use records",
+    {.doc = "eye vertices at most this number of edges from the eye use records",
      .min = 1,
      .max = 1024,
      .unit = "edges"});

@@ -13,20 +13,19 @@ template <>
 struct EnumTable<EmitterChoice> {
   static constexpr std::array<EnumValue<EmitterChoice>, 3> values{{
       {EmitterChoice::automatic, "auto",
-       "`tree` in scenes of more than a few emitters, else `power`; each triangle that emits is an "
+       "`tree` in scenes of more than a few emitters, else `power`; each emissive triangle is an "
        "emitter"},
       {EmitterChoice::tree, "tree",
-       "by a light tree, for each vertex anew: by power, distance, and the directions of emission "
-       "and of the surface (Conty Estevez and Kulla 2018)"},
+       "by a light tree, for each vertex: by power, distance, and the directions of emission and "
+       "of the surface (Conty Estevez and Kulla 2018)"},
       {EmitterChoice::power, "power",
-       "by power, the same everywhere; one time in eight by mesh or light first"},
+       "by power, the same at all vertices; with probability 1/8 by mesh or light first"},
   }};
 };
 
 template <class V>
 void describe_emitters(V& v, EmitterChoice& choice) {
-  v("emitters", choice,
-    {.doc = "how the emitter is selected on which next event estimation samples a point"});
+  v("emitters", choice, {.doc = "how next event estimation selects the emitter"});
 }
 
 }  // namespace lacuna

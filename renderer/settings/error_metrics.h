@@ -10,20 +10,20 @@
 
 namespace lacuna {
 
-/// Error of an estimate x against a reference r, over pixels and channels. The smaller, the better.
+/// Error of an estimate x against a reference r, over pixels and channels. Smaller is better.
 enum class ErrorMetric { mae, rmse, mse, relmse, smape, est_rmse };
 
 constexpr double squared_error(double x, double r) { return (x - r) * (x - r); }
 
 /// The definition of an error metric. Film, curve.csv, reports, comparisons, the schema and the
-/// page take names and definitions from this table.
+/// page use the names and definitions of this table.
 struct ErrorMetricRow {
   ErrorMetric value;
   std::string_view name;   ///< in files
   std::string_view doc;    ///< definition
   std::string_view label;  ///< in tables and figures
   std::string_view unit = {};
-  bool squared = false;  ///< falls as 1 / samples; the others as 1 / sqrt(samples)
+  bool squared = false;  ///< decreases as 1 / samples; the others as 1 / sqrt(samples)
   bool needs_reference = true;
   /// With a reference, the error is the mean of term(x, r) over pixels and channels.
   double (*term)(double x, double r) = nullptr;
@@ -83,7 +83,7 @@ constexpr const ErrorMetricRow& row_of(ErrorMetric metric) {
 
 constexpr bool needs_reference(ErrorMetric metric) { return row_of(metric).needs_reference; }
 
-/// Number of metrics that need a reference, which come first.
+/// Number of metrics that need a reference; these come first.
 inline constexpr std::size_t reference_metrics = static_cast<std::size_t>(std::ranges::count_if(
     error_metrics, [](const ErrorMetricRow& row) { return row.needs_reference; }));
 
@@ -95,7 +95,7 @@ static_assert([] {
   return true;
 }());
 
-/// The metric that is shown by default.
+/// The metric shown by default.
 constexpr ErrorMetric usual_metric(bool has_reference) {
   return has_reference ? ErrorMetric::relmse : ErrorMetric::est_rmse;
 }

@@ -20,8 +20,8 @@ void describe(V&, AllLightsSettings&) {}
 struct RandomLightsSettings {
   static constexpr std::string_view name = "random";
   static constexpr std::string_view doc =
-      "a few virtual lights for each shading point, equally probable, by systematic sampling along "
-      "the lights' order in space (Kol et al. 2018, 5.1)";
+      "a few virtual lights for each shading point, with equal probability, by systematic sampling "
+      "in the lights' spatial order (Kol et al. 2018, 5.1)";
 
   int lights = 64;
   bool cull = true;
@@ -30,26 +30,23 @@ struct RandomLightsSettings {
   double filter_normal = 32;
   double filter_slope = 0.1;
 
-  /// The filter mixes in the light of neighbouring pixels; the cutoff omits distant lights.
+  /// The filter blends light of neighbouring pixels; the cutoff omits distant lights.
   bool biased() const { return filter_radius > 0 || cutoff > 0; }
   bool operator==(const RandomLightsSettings&) const = default;
 };
 template <class V>
 void describe(V& v, RandomLightsSettings& s) {
   v("lights", s.lights,
-    {.doc =
-         "virtual lights for each shading point. A visibility has fewer cache points then, so that "
-         "their tests are at most a quarter of the tests of these lights",
+    {.doc = "virtual lights for each shading point. The number of cache points of a visibility is "
+            "limited so that they test at most a quarter as many lights as the shading points",
      .min = 1,
      .max = 1 << 20});
   v("cull", s.cull,
-    {.doc =
-         "leave out groups of lights that all face away from the shading point or lie behind its "
-         "surface"});
+    {.doc = "omit groups of lights that all face away from the shading point or lie behind its "
+            "surface"});
   v("cutoff", s.cutoff,
-    {.doc =
-         "ignore lights further from the shading point than this; 0: ignore none. Less noise, but "
-         "biased",
+    {.doc = "ignore lights further from the shading point than this; 0: no limit. Less noise, but "
+            "biased",
      .min = 0,
      .max = 1e15,
      .unit = "scene units"});

@@ -14,17 +14,17 @@ namespace lacuna {
 /// guide: bsdf. The next direction is sampled from the BSDF.
 struct BsdfGuideSettings {
   static constexpr std::string_view name = "bsdf";
-  static constexpr std::string_view doc = "directions are sampled from the BSDF alone";
+  static constexpr std::string_view doc = "directions are sampled from the BSDF only";
   bool operator==(const BsdfGuideSettings&) const = default;
 };
 template <class V>
 void describe(V&, BsdfGuideSettings&) {}
 
-/// Largest probability of a guide against the BSDF. 1 is not allowed: directions that the guide
-/// never samples must be sampled by the BSDF.
+/// Largest probability of a guide relative to the BSDF. 1 is not allowed: the BSDF must sample the
+/// directions that the guide never samples.
 inline constexpr double most_guided = 0.9;
 
-/// The point on the visible part of a shortest path that rays are aimed at.
+/// The point, on the visible part of a shortest path, at which rays are aimed.
 enum class ImportanceAim { last, tightest, mean };
 
 template <>
@@ -37,8 +37,7 @@ struct EnumTable<ImportanceAim> {
   }};
 };
 
-/// The settings of guides that trace rays from the lights to find lit surfaces (Noel 2015, eq.
-/// 176).
+/// Settings of guides that trace rays from the lights to find lit surfaces (Noel 2015, eq. 176).
 struct LightRays {
   int light_rays = 1 << 16;
   bool operator==(const LightRays&) const = default;
@@ -57,7 +56,7 @@ struct SkeletonGuideSettings : LightRays {
 
   AutoNumber strength{8};
   AutoNumber probability;
-  ImportanceAim aim = ImportanceAim::last;  // as published it is otherwise
+  ImportanceAim aim = ImportanceAim::last;  // differs from the published value
   bool operator==(const SkeletonGuideSettings&) const = default;
 };
 template <class V>
@@ -80,19 +79,18 @@ void describe(V& v, SkeletonGuideSettings& s) {
       v, s, "rays from the lights that estimate the power arriving at each node (eq. 176)");
 }
 
-/// The settings of guides that use the regions of the opening forest labelling.
+/// Settings of guides that use the regions of the opening forest labelling.
 struct RegionGuideSettings {
   AutoNumber probability;
   int mixing = 4;
   bool guide_only = false;
-  /// A point in the coordinates of the scene's file: the faces that it names are those of all
-  /// regions.
+  /// A point in the coordinates of the scene's file: it selects the faces for all regions.
   std::optional<std::array<double, 3>> through;
   bool biased() const { return guide_only; }
   bool operator==(const RegionGuideSettings&) const = default;
 };
 
-/// `through`: the documentation of that field, which names other faces for each guide.
+/// `through`: the documentation of that field; each guide selects other faces by it.
 template <class V>
 void describe_region_guide(V& v, RegionGuideSettings& s, const char* through) {
   v("probability", s.probability,
@@ -102,20 +100,19 @@ void describe_region_guide(V& v, RegionGuideSettings& s, const char* through) {
      .max = most_guided});
   v("mixing", s.mixing,
     {.doc = "distance over which the distributions of neighbouring regions are interpolated; 0: no "
-            "interpolation, which shows as a border in the picture's noise",
+            "interpolation, which makes borders visible in the noise",
      .min = 0,
      .max = 64,
      .unit = "voxels",
      .published = "0"});
   v("guide_only", s.guide_only,
-    {.doc =
-         "never sample the BSDF in a region that has a distribution, whatever `probability` says: "
-         "biased, because light that comes past its faces is missed (Noel 2015, 10.4, SIS1 and "
-         "FIS1)"});
+    {.doc = "never sample the BSDF in a region that has a distribution, regardless of "
+            "`probability`: biased, because light that does not arrive through its faces is missed "
+            "(Noel 2015, 10.4, SIS1 and FIS1)"});
   v("through", s.through, {.doc = through, .min = -1e15, .max = 1e15});
 }
 
-/// The portal on a shortest path that rays are sent through.
+/// The portal, on a shortest path, that rays are sent through.
 enum class PortalChoice { last, next };
 
 template <>
@@ -132,7 +129,7 @@ struct PortalsGuideSettings : RegionGuideSettings, LightRays {
   static constexpr std::string_view doc =
       "rays through the portals on the shortest paths to where the light arrives (Noel 2015, "
       "10.4.1)";
-  PortalChoice portal = PortalChoice::last;  // as published it is otherwise
+  PortalChoice portal = PortalChoice::last;  // differs from the published value
   bool operator==(const PortalsGuideSettings&) const = default;
 };
 template <class V>
@@ -151,8 +148,8 @@ void describe(V& v, PortalsGuideSettings& s) {
 struct FaceIrradianceGuideSettings : RegionGuideSettings {
   static constexpr std::string_view name = "face_irradiance";
   static constexpr std::string_view doc =
-      "rays through the faces of a region's border, in proportion to the light found through each "
-      "(Noel 2015, 10.4.2)";
+      "rays through the faces of a region's border, in proportion to the light that arrives "
+      "through each (Noel 2015, 10.4.2)";
   double least_distance = 0;
   double least_cosine = 0;
   bool operator==(const FaceIrradianceGuideSettings&) const = default;
@@ -164,15 +161,15 @@ void describe(V& v, FaceIrradianceGuideSettings& s) {
                         "guided rays, of every region, go through faces of the border of the "
                         "region that it lies in (Noel 2015, 10.4.2, FIS3 and FIS4)");
   v("least_distance", s.least_distance,
-    {.doc = "where the centre of the chosen face is nearer than this share of the diagonal of the "
-            "scene's box, a face of the border of the region behind it takes its place (d_t, "
+    {.doc = "if the centre of the selected face is closer than this fraction of the diagonal of "
+            "the scene's box, a face of the border of the region behind it is used instead (d_t, "
             "10.4.2); 0: never",
      .min = 0,
      .max = 1,
      .published = "0.01"});
   v("least_cosine", s.least_cosine,
-    {.doc = "the same where the cosine between the face's normal and the direction to its centre "
-            "is below this (o_t); 0: never",
+    {.doc = "the same if the cosine between the face's normal and the direction to its centre is "
+            "below this (o_t); 0: never",
      .min = 0,
      .max = 1,
      .published = "0.5"});
@@ -197,8 +194,8 @@ void describe(V& v, SdTreeGuideSettings& s) {
      .min = 0,
      .max = most_guided});
   v("leaf_vertices", s.leaf_vertices,
-    {.doc = "vertices above which a leaf of the spatial tree is divided after the first iteration "
-            "(c of the paper)",
+    {.doc = "number of vertices above which a leaf of the spatial tree is split after the first "
+            "iteration (c of the paper)",
      .min = 1,
      .max = 1 << 30});
 }
@@ -207,7 +204,7 @@ void describe(V& v, SdTreeGuideSettings& s) {
 struct LearnedSkeletonGuideSettings : LightRays {
   static constexpr std::string_view name = "learned_skeleton";
   static constexpr std::string_view doc =
-      "incident radiance learned in cells of the empty space, from the skeleton's lobes on";
+      "incident radiance learned in cells of the empty space, initialised by the skeleton's lobes";
   AutoNumber probability;
   int leaf_vertices = 4000;
   bool operator==(const LearnedSkeletonGuideSettings&) const = default;
@@ -220,7 +217,7 @@ void describe(V& v, LearnedSkeletonGuideSettings& s) {
      .min = 0,
      .max = most_guided});
   v("leaf_vertices", s.leaf_vertices,
-    {.doc = "vertices above which a cell is divided after the first iteration",
+    {.doc = "number of vertices above which a cell is split after the first iteration",
      .min = 1,
      .max = 1 << 30});
   describe_light_rays(v, s,
@@ -228,7 +225,7 @@ void describe(V& v, LearnedSkeletonGuideSettings& s) {
                       "lobes of the first iterations");
 }
 
-/// How the next direction of an eye path is sampled. A new guide is one more alternative here.
+/// How the next direction of an eye path is sampled. A new guide is a further alternative here.
 using GuideSettings =
     std::variant<BsdfGuideSettings, SkeletonGuideSettings, PortalsGuideSettings,
                  FaceIrradianceGuideSettings, SdTreeGuideSettings, LearnedSkeletonGuideSettings>;

@@ -42,7 +42,8 @@ struct EnumTable<InspectQuantity> {
       {InspectQuantity::visibility_clusters, "visibility_clusters",
        "the visibility cluster of the surface's node, one colour per cluster"},
       {InspectQuantity::nearest_node_visible, "nearest_node_visible",
-       "green where the surface sees its node, red where it does not, black where it has no node"},
+       "green where the surface and its node are mutually visible, red where they are not, black "
+       "where it has no node"},
       {InspectQuantity::guide_density, "guide_density",
        "density per steradian of the guide's directions from the point `from` to the surface; "
        "black "
@@ -51,11 +52,11 @@ struct EnumTable<InspectQuantity> {
        "the cell of the guide that the surface lies in, one colour per cell, black where it has "
        "none"},
       {InspectQuantity::guide_probability, "guide_probability",
-       "the probability with which a direction is sampled from the guide instead of the BSDF"},
+       "the probability of sampling a direction from the guide instead of the BSDF"},
   }};
 };
 
-/// It shows the analysis of the empty space.
+/// Whether the quantity belongs to the analysis of the empty space.
 constexpr bool shows_space(InspectQuantity quantity) {
   switch (quantity) {
     case InspectQuantity::node_mapping:
@@ -70,7 +71,7 @@ constexpr bool shows_space(InspectQuantity quantity) {
   }
 }
 
-/// It shows a guide.
+/// Whether the quantity belongs to a guide.
 constexpr bool shows_guide(InspectQuantity quantity) {
   switch (quantity) {
     case InspectQuantity::guide_density:
@@ -101,8 +102,8 @@ void describe(V& v, InspectSettings& s) {
   v("show", s.show, {.doc = "the quantity shown"});
   v("guide", s.guide, {.doc = "the guide that is shown"});
   v("learn", s.learn,
-    {.doc = "iterations of `path` with its defaults that the guide learns from before it is shown; "
-            "0: as prepared",
+    {.doc = "training iterations, by `path` with its defaults, before the guide is shown; 0: as "
+            "initialised",
      .min = 0,
      .max = 65536});
   v("from", s.from,

@@ -19,17 +19,16 @@
 
 namespace lacuna {
 
-/// The integrator and its settings. The order is the order in menus; the first is the default.
-/// renderer/integrators/registry.cpp makes the integrator of each alternative.
+/// The integrator and its settings. The order is that of menus; the first is the default.
+/// renderer/integrators/registry.cpp constructs the integrator of each alternative.
 using IntegratorSettings =
     std::variant<PathSettings, LightSettings, BdptSettings, VcmSettings, SppmSettings,
                  PhotonMapSettings, ManyLightsSettings, MetropolisSettings, InspectSettings>;
 
-/// The layers that the integrator of these settings fills itself. Its settings struct lists them as
+/// The layers that the integrator of these settings fills itself. Its settings struct lists them,
+/// if there are any, as
 ///
 ///     static constexpr std::array layers{ImageLayer::strategies};
-///
-/// or has no such list.
 template <class... Ts>
 std::span<const ImageLayer> filled_layers(const std::variant<Ts...>& settings) {
   return std::visit(
@@ -43,7 +42,7 @@ std::span<const ImageLayer> filled_layers(const std::variant<Ts...>& settings) {
       settings);
 }
 
-/// Whether a job's `sampler` spreads the samples of these settings: always, but where they have a
+/// Whether a job's `sampler` stratifies the samples of these settings: true unless they have a
 /// `static constexpr bool spreads_samples = false`.
 template <class... Ts>
 bool spreads_samples(const std::variant<Ts...>& settings) {
@@ -55,7 +54,7 @@ bool spreads_samples(const std::variant<Ts...>& settings) {
       settings);
 }
 
-/// Whether paths start at lights only and are connected to the eye: where the settings have a
+/// Whether paths start only at lights and are connected to the eye: true if the settings have a
 /// `static constexpr bool from_lights_only = true`.
 template <class... Ts>
 bool from_lights_only(const std::variant<Ts...>& settings) {
@@ -67,9 +66,9 @@ bool from_lights_only(const std::variant<Ts...>& settings) {
       settings);
 }
 
-/// The light paths of an iteration where all pixels share them, and the light that they do not
-/// bring is missing: settings with a `static constexpr bool shares_light_paths = true`. None: the
-/// method is no such one. `pixels`: of the picture, the number where `light_paths` is 0.
+/// The light paths of an iteration, for methods whose pixels share them and miss the light that
+/// they do not carry: settings with a `static constexpr bool shares_light_paths = true`. None for
+/// other methods. `pixels`: of the picture, the number if `light_paths` is 0.
 template <class... Ts>
 std::optional<double> shared_light_paths(const std::variant<Ts...>& settings, double pixels) {
   return std::visit(
@@ -83,8 +82,8 @@ std::optional<double> shared_light_paths(const std::variant<Ts...>& settings, do
       settings);
 }
 
-/// Why the integrator's settings do not go together, as "found ..." goes on; empty: they do. Each
-/// alternative may have such a function.
+/// Why the integrator's settings are incompatible, as the continuation of "found ..."; empty if
+/// they are compatible. An alternative may define such a function.
 template <class... Ts>
 std::string_view conflict(const std::variant<Ts...>& settings) {
   return std::visit(
@@ -95,7 +94,7 @@ std::string_view conflict(const std::variant<Ts...>& settings) {
       settings);
 }
 
-/// All layers that a job with this integrator can request.
+/// All layers that a job with this integrator may request.
 template <class... Ts>
 std::vector<ImageLayer> offered_layers(const std::variant<Ts...>& settings) {
   std::vector<ImageLayer> all(common_layers.begin(), common_layers.end());

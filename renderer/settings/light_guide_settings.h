@@ -11,8 +11,8 @@ namespace lacuna {
 struct SkeletonLightGuideSettings {
   static constexpr std::string_view name = "skeleton";
   static constexpr std::string_view doc =
-      "light paths go to what the eye sees, along the skeleton of the empty space: the guide "
-      "`skeleton` with both ends exchanged";
+      "light paths are guided towards visible surfaces along the skeleton of the empty space: the "
+      "guide `skeleton` with eye and light exchanged";
 
   double probability = 0.3;
   double strength = 32;
@@ -23,8 +23,8 @@ struct SkeletonLightGuideSettings {
 template <class V>
 void describe(V& v, SkeletonLightGuideSettings& s) {
   v("probability", s.probability,
-    {.doc = "probability of sampling a direction from the lobes instead of as the surface scatters "
-            "or emits",
+    {.doc = "probability of sampling a direction from the lobes instead of from the BSDF or the "
+            "emission",
      .min = 0,
      .max = most_guided});
   v("strength", s.strength,
@@ -34,7 +34,7 @@ void describe(V& v, SkeletonLightGuideSettings& s) {
   v("aim", s.aim,
     {.doc = "the point on the visible part of a shortest path that rays are aimed at"});
   v("eye_rays", s.eye_rays,
-    {.doc = "rays from the eye that estimate how much of each node is seen",
+    {.doc = "rays from the eye that estimate how much of each node is visible",
      .min = 1,
      .max = 1 << 20});
 }
@@ -45,9 +45,8 @@ using LightGuideSettings = std::variant<BsdfGuideSettings, SkeletonLightGuideSet
 template <class V>
 void describe_light_guide(V& v, LightGuideSettings& s) {
   v("light_guide", s,
-    {.doc =
-         "how the directions of a light path are sampled: as emitters emit and surfaces scatter, "
-         "or towards what the eye sees"});
+    {.doc = "how the directions of a light path are sampled: from emission and BSDF, or also "
+            "towards visible surfaces"});
 }
 
 }  // namespace lacuna

@@ -14,7 +14,7 @@ struct LightSettings : PathLengths {
       "light tracing: paths from the lights, connected to the eye (Noel 2015, 4.2.5); mirrors and "
       "clear glass are black";
 
-  /// No paths start at the eye, so surfaces that few light paths reach are noisy.
+  /// No paths start at the eye, so surfaces that few light paths hit are noisy.
   static constexpr bool from_lights_only = true;
   static constexpr bool shares_light_paths = true;
 
@@ -28,7 +28,7 @@ template <class V>
 void describe(V& v, LightSettings& s) {
   describe_lengths(v, s);
   v("light_paths", s.light_paths,
-    {.doc = "light paths per iteration; 0: one for each pixel", .min = 0, .max = 1 << 20});
+    {.doc = "light paths per iteration; 0: one per pixel", .min = 0, .max = 1 << 20});
   describe_light_guide(v, s.light_guide);
 }
 

@@ -88,14 +88,14 @@ void describe(V& v, ManyLightsSettings& s) {
   v("bound", s.bound, {.doc = "value of the bound", .min = 0, .max = 1e30, .above_min = true});
   v("compensation", s.compensation,
     {.doc = "path tracing adds the light that virtual lights lack: the part above the bound, and "
-            "light by mirrors, glass and smooth metal (Kollig and Keller 2004). Without it, the "
-            "picture is too dark"});
+            "light reflected or refracted by mirrors, glass and smooth metal (Kollig and Keller "
+            "2004). Without it, the picture is too dark"});
   v("least_roughness", s.least_roughness,
     {.doc = "metals smoother than this, and glass, carry no virtual lights and are followed like "
             "mirrors, because a virtual light in a narrow lobe is a bright spot",
      .min = 0,
      .max = 1});
-  v("gather", s.gather, {.doc = "which virtual lights are gathered at a shading point"});
+  v("gather", s.gather, {.doc = "the virtual lights gathered at a shading point"});
   v("visibility", s.visibility,
     {.doc = "how the visibility between a surface and a virtual light is estimated"});
 }

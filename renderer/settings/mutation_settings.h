@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// What mutations in primary sample space have in common.
+/// Settings common to mutations in primary sample space.
 struct PrimaryStepSettings {
   double step = 0x1p-5;
   int octaves = 8;
@@ -19,7 +19,7 @@ void describe_steps(V& v, PrimaryStepSettings& s) {
   v("step", s.step,
     {.doc = "largest change of a random number in a small step", .min = 1e-6, .max = 0.5});
   v("octaves", s.octaves,
-    {.doc = "each small step divides `step` by a power of two below 2^octaves, drawn at random",
+    {.doc = "each small step divides `step` by a random power of two below 2^octaves",
      .min = 1,
      .max = 16});
   v("large_steps", s.large_steps,
@@ -43,8 +43,8 @@ void describe(V& v, MultiplexedSettings& s) {
 struct PrimarySampleSettings : PrimaryStepSettings {
   static constexpr std::string_view name = "primary_sample";
   static constexpr std::string_view doc =
-      "changes the random numbers of an eye path and a light path, which are joined in all ways "
-      "(Kelemen et al. 2002; Noel 2015, 4.6)";
+      "changes the random numbers of an eye path and a light path, which are connected by all "
+      "strategies (Kelemen et al. 2002; Noel 2015, 4.6)";
   bool operator==(const PrimarySampleSettings&) const = default;
 };
 template <class V>
@@ -56,7 +56,7 @@ void describe(V& v, PrimarySampleSettings& s) {
 struct PathSpaceSettings {
   static constexpr std::string_view name = "path_space";
   static constexpr std::string_view doc =
-      "changes some vertices of a path: replaces a part of it, or turns one of its directions "
+      "changes some vertices of a path: replaces a part of it, or rotates one of its directions "
       "(Veach and Guibas 1997)";
 
   double large_steps = 0.01;
@@ -73,20 +73,19 @@ void describe(V& v, PathSpaceSettings& s) {
   v("large_steps", s.large_steps,
     {.doc = "probability of a proposal that is independent of the state", .min = 0, .max = 1});
   v("bidirectional", s.bidirectional,
-    {.doc =
-         "probability of replacing a part of the path where the proposal is not independent; all "
-         "others are perturbations",
+    {.doc = "probability of replacing a part of the path, among proposals that depend on the "
+            "state; the others are perturbations",
      .min = 0,
      .max = 1});
   v("lens", s.lens,
-    {.doc =
-         "probability that a perturbation moves the path on the film; the others turn a direction "
-         "between two of its vertices",
+    {.doc = "probability that a perturbation moves the path on the film; the others rotate the "
+            "direction between two of its vertices",
      .min = 0,
      .max = 1});
   v("largest_angle", s.largest_angle,
-    {.doc = "largest angle that a direction is turned by, radians; a ray from infinity moves aside "
-            "by as much of its way to the next vertex that scatters",
+    {.doc =
+         "largest angle by which a direction is rotated, radians; a ray from infinity is shifted "
+         "sideways by the same fraction of its distance to the next vertex that scatters",
      .min = 1e-6,
      .max = 3});
   v("largest_lens", s.largest_lens,
@@ -98,8 +97,8 @@ void describe(V& v, PathSpaceSettings& s) {
      .min = 0,
      .max = 20});
   v("least_tested", s.least_tested,
-    {.doc = "a proposal whose probability of acceptance is below this gets its shadow ray with a "
-            "probability only",
+    {.doc = "a proposal whose acceptance probability is below this is tested by a shadow ray only "
+            "with some probability (Russian roulette)",
      .min = 0,
      .max = 1,
      .above_min = true});

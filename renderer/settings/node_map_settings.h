@@ -4,8 +4,8 @@
 
 namespace lacuna {
 
-/// Default of the side of the cube maps around the skeleton's nodes, in texels. Whoever uses the
-/// same size shares the cache's maps.
+/// Default side of the cube maps around the skeleton's nodes, in texels. Maps of equal size are
+/// shared in the cache.
 inline constexpr int node_map_size = 128;
 
 template <class V>

@@ -24,7 +24,7 @@ template <>
 struct EnumTable<ImageLayer> {
   static constexpr std::array<EnumValue<ImageLayer>, 10> values{{
       {ImageLayer::variance, "variance",
-       "variance of the pixel's mean: from all iterations where they are independent, from the two "
+       "variance of the pixel's mean: from all iterations if they are independent, from the two "
        "halves with sampler `sobol`"},
       {ImageLayer::halves, "halves",
        "means of the even and of the odd iterations, two independent estimates"},
@@ -39,13 +39,14 @@ struct EnumTable<ImageLayer> {
       {ImageLayer::distributions, "distributions",
        "contribution of each resampling distribution to the picture"},
       {ImageLayer::visibility_tests, "visibility_tests",
-       "share of the virtual lights whose visibility was tested by a ray"},
-      {ImageLayer::negative, "negative", "share of the iterations in which the pixel was below 0"},
+       "fraction of the virtual lights whose visibility was tested by a ray"},
+      {ImageLayer::negative, "negative",
+       "fraction of the iterations in which the pixel was below 0"},
   }};
 };
 
-/// The layers that every integrator has. Each of the others is filled by the integrators whose
-/// settings list it (filled_layers()).
+/// The layers that every integrator offers. Integrators whose settings list another layer fill it
+/// (filled_layers()).
 inline constexpr std::array common_layers{ImageLayer::variance, ImageLayer::halves,
                                           ImageLayer::albedo, ImageLayer::normal,
                                           ImageLayer::depth};
@@ -68,7 +69,7 @@ template <>
 struct EnumTable<PixelType> {
   static constexpr std::array<EnumValue<PixelType>, 2> values{{
       {PixelType::single_float, "float", "32 bits"},
-      {PixelType::half_float, "half", "16 bits; an error where a value would overflow"},
+      {PixelType::half_float, "half", "16 bits; an error if a value would overflow"},
   }};
 };
 

@@ -25,7 +25,7 @@ struct PathSettings : PathLengths {
   EmitterChoice emitters = EmitterChoice::automatic;
   int reuse = 1;
 
-  /// Why these settings do not go together; empty: they do.
+  /// Why these settings are incompatible; empty if they are compatible.
   std::string_view conflict() const {
     if (reuse > 1 && roulette_depth < 2) {
       return "pixels that share light, with roulette at their first vertex; allowed: "
@@ -46,9 +46,9 @@ void describe(V& v, PathSettings& s) {
     {.doc = "also sample a point on an emitter at every vertex"});
   describe_emitters(v, s.emitters);
   v("reuse", s.reuse,
-    {.doc = "pixels of a block of 8 x 8 that share the light that their paths gather behind the "
-            "second surface, by shadow rays to it (Bekaert et al. 2002); 1: none. With a "
-            "roulette_depth of at least 2",
+    {.doc = "number of pixels of a block of 8 x 8 that share the light gathered by their paths "
+            "behind the second surface, by shadow rays to it (Bekaert et al. 2002); 1: no sharing. "
+            "Requires roulette_depth 2 or more",
      .min = 1,
      .max = 64,
      .unit = "pixels"});

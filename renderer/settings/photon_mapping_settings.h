@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// What photon mapping and its progressive form have in common.
+/// Settings common to photon mapping and its progressive form.
 struct PhotonTracing : PathLengths, RadiusSettings {
   static constexpr bool shares_light_paths = true;
 
@@ -24,19 +24,18 @@ template <class V>
 void describe_photons(V& v, PhotonTracing& s) {
   describe_lengths(v, s);
   v("light_paths", s.light_paths,
-    {.doc =
-         "light paths per iteration, shared by all pixels; every surface vertex of a path leaves "
-         "a photon. 0: one path for each pixel",
+    {.doc = "light paths per iteration, shared by all pixels; every surface vertex of a path "
+            "stores a photon. 0: one path per pixel",
      .min = 0,
      .max = 1 << 22});
   describe_radius(v, s);
-  v("kernel", s.kernel, {.doc = "how a photon counts by its distance"});
+  v("kernel", s.kernel, {.doc = "how the weight of a photon depends on its distance"});
   v("next_event_estimation", s.next_event_estimation,
     {.doc = "estimate direct light as in path tracing, by points on emitters and the emitters that "
-            "eye paths hit; without it, photons bring direct light, too"});
+            "eye paths hit; otherwise photons carry direct light, too"});
   v("least_roughness", s.least_roughness,
     {.doc = "metals smoother than this, and glass, are followed like mirrors: few photons arrive "
-            "in a narrow lobe",
+            "within a narrow lobe",
      .min = 0,
      .max = 1});
   describe_light_guide(v, s.light_guide);
@@ -49,7 +48,7 @@ struct SppmSettings : PhotonTracing {
       "stochastic progressive photon mapping: photons and eye paths of each iteration are new, and "
       "the radius shrinks (Hachisuka and Jensen 2009; Noel 2015, 4.5.2)";
 
-  /// By the radius of each iteration; see RadiusSettings::consistent().
+  /// True for the radius of each iteration; see RadiusSettings::consistent().
   static constexpr bool biased() { return true; }
   bool operator==(const SppmSettings&) const = default;
 };
@@ -65,7 +64,8 @@ struct PhotonMapSettings : PhotonTracing {
   static constexpr std::string_view name = "photon_map";
   static constexpr std::string_view doc =
       "photon mapping: the density of the photons around a point is the light there (Jensen 1996; "
-      "Noel 2015, 4.5). The radius stays, and with it a bias at which the error levels off";
+      "Noel 2015, 4.5). The radius is fixed, and with it a bias below which the error does not "
+      "fall";
 
   int nearest = 0;
   bool final_gather = false;
@@ -84,16 +84,16 @@ template <class V>
 void describe(V& v, PhotonMapSettings& s) {
   describe_photons(v, s);
   v("nearest", s.nearest,
-    {.doc = "estimate the density from this number of nearest photons, where so many lie within "
-            "`radius`; 0: from all within `radius`",
+    {.doc = "estimate the density from this number of nearest photons, if `radius` contains that "
+            "many; 0: from all photons within `radius`",
      .min = 0,
      .max = 1024});
   v("final_gather", s.final_gather,
-    {.doc = "at the first surface, look up caustics only, and gather other indirect light by one "
-            "more edge to where photons are looked up: less bias, more noise"});
+    {.doc = "look up only caustics at the first surface, and gather other indirect light by one "
+            "further edge, at whose end photons are looked up: less bias, more noise"});
   v("caustic_paths", s.caustic_paths,
-    {.doc = "light paths per iteration whose caustics, light by way of mirrors or glass only, have "
-            "a map of their own; 0: the photons of all paths are in one map",
+    {.doc = "light paths per iteration for a separate map of caustics, light that arrives by "
+            "mirrors or glass only; 0: one map of all photons",
      .min = 0,
      .max = 1 << 22});
 }

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// A change of one of the scene's materials, to test a method with, say, a glossy floor.
+/// A change of one of the scene's materials, to test a method with, for example, a glossy floor.
 struct MaterialChange {
   std::string name;
   double roughness = 1;
@@ -57,8 +57,7 @@ void describe(V& v, ParticleSettings& s) {
   v("high", s.high, {.doc = "upper corner of that box, along x, y and z", .min = 0, .max = 1});
   v("seed", s.seed, {.doc = "seed of the random positions", .min = 0, .max = 2147483647});
   v("alone", s.alone,
-    {.doc =
-         "leave out the scene's own point, spot and directional lights; emissive surfaces stay"});
+    {.doc = "remove the scene's point, spot and directional lights; emissive surfaces remain"});
 }
 
 }  // namespace lacuna

@@ -25,7 +25,7 @@ struct VcmSettings : PathLengths, RadiusSettings {
   LightGuideSettings light_guide = BsdfGuideSettings{};
 
   bool biased() const { return merge || lacuna::biased(guide); }
-  /// The bias of merging vanishes with the radius of an iteration, that of a guide does not.
+  /// The bias of merging vanishes with the radius; the bias of a guide does not.
   bool consistent() const { return RadiusSettings::consistent() && !lacuna::biased(guide); }
   bool operator==(const VcmSettings&) const = default;
 };
@@ -34,11 +34,11 @@ template <class V>
 void describe(V& v, VcmSettings& s) {
   describe_lengths(v, s);
   v("merge", s.merge,
-    {.doc = "merge eye vertices with light vertices nearby. Without it, the method is `bdpt` with "
-            "`paired` connections, bit by bit"});
+    {.doc = "merge eye vertices with nearby light vertices. Otherwise the method is `bdpt` with "
+            "`paired` connections, bit for bit"});
   v("connect", s.connect,
     {.doc = "connect the vertices of eye and light paths, light paths to the eye, and eye paths to "
-            "points on emitters. Without it, the method is bidirectional photon mapping"});
+            "points on emitters. Otherwise the method is bidirectional photon mapping"});
   describe_radius(v, s);
   describe_alpha(v, s);
   v("guide", s.guide, {.doc = "how the next direction of an eye path is sampled"});

@@ -29,53 +29,53 @@ struct NoVisibilitySettings {
 template <class V>
 void describe(V&, NoVisibilitySettings&) {}
 
-/// Which variance determines the probability of testing a light.
+/// The variance that determines the probability of testing a light.
 enum class VarianceOf { picture, point };
 
 template <>
 struct EnumTable<VarianceOf> {
   static constexpr std::array<EnumValue<VarianceOf>, 2> values{{
       {VarianceOf::picture, "picture",
-       "the variance of contributions over the whole picture, so that each pixel is judged by its "
+       "the variance of contributions over the whole picture, so that tests follow each pixel's "
        "share of the picture's error"},
       {VarianceOf::point, "point",
-       "the variance of contributions at the nearest cache points (Nabata et al., eq. 8); where "
-       "they see no light, every light is tested"},
+       "the variance of contributions at the nearest cache points (Nabata et al., eq. 8); if no "
+       "light is visible from them, every light is tested"},
   }};
 };
 
-/// How the lights to test are drawn, each with its own probability.
+/// How the lights to test are sampled, each with its own probability.
 enum class TestDraws { systematic, bernoulli };
 
 template <>
 struct EnumTable<TestDraws> {
   static constexpr std::array<EnumValue<TestDraws>, 2> values{{
       {TestDraws::systematic, "systematic",
-       "64 neighbouring lights by one random number, so that the tests are spread evenly over "
-       "them"},
-      {TestDraws::bernoulli, "bernoulli", "each light by a random number of its own (eq. 3)"},
+       "one random number for 64 neighbouring lights, so that the tests are distributed evenly "
+       "over them"},
+      {TestDraws::bernoulli, "bernoulli", "a random number for each light (eq. 3)"},
   }};
 };
 
-/// Which lights a cache point tests.
+/// The lights that a cache point tests.
 enum class CacheLights { lit, all };
 
 template <>
 struct EnumTable<CacheLights> {
   static constexpr std::array<EnumValue<CacheLights>, 2> values{{
       {CacheLights::lit, "lit",
-       "those that contribute to the cache point; of the others, as of those behind its horizon, "
-       "nothing is known there"},
+       "those that contribute to the cache point; the visibility of the others, such as those "
+       "behind its horizon, is unknown there"},
       {CacheLights::all, "all", "all lights (Nabata et al., 3.1)"},
   }};
 };
 
-/// The settings of strategies that test lights at random.
+/// Settings of strategies that test lights at random.
 struct ChanceSettings {
   int cache_points = 2000;
   int neighbours = 3;
   double epsilon_probability = 0.1;
-  // As published they are otherwise, see their tables:
+  // These differ from the published values, see their tables:
   double term_cost = 0.03;
   VarianceOf variance = VarianceOf::picture;
   TestDraws draws = TestDraws::systematic;
@@ -94,18 +94,18 @@ void describe_cache(V& v, S& s, std::string_view what) {
 template <class V>
 void describe_chance(V& v, ChanceSettings& s) {
   v("epsilon_probability", s.epsilon_probability,
-    {.doc = "least probability of a test (Nabata et al., eq. 12)",
+    {.doc = "smallest probability of a test (Nabata et al., eq. 12)",
      .min = 0,
      .max = 1,
      .above_min = true});
   v("term_cost", s.term_cost,
-    {.doc = "time to evaluate a light's contribution, as a share of the time of its shadow ray; 0: "
-            "only rays count (eq. 13)",
+    {.doc = "time to evaluate a light's contribution, as a fraction of the time of its shadow ray; "
+            "0: only rays are counted (eq. 13)",
      .min = 0,
      .max = 1e6,
      .published = "0"});
   v("variance", s.variance, {.doc = "which variance is sigma^2 (eq. 8)", .published = "\"point\""});
-  v("draws", s.draws, {.doc = "how the lights to test are drawn", .published = "\"bernoulli\""});
+  v("draws", s.draws, {.doc = "how the lights to test are sampled", .published = "\"bernoulli\""});
 }
 
 template <class V, class S>
@@ -114,17 +114,17 @@ void describe_cache_lights(V& v, S& s, std::string_view published = {}) {
     {.doc = "the lights that a cache point tests", .published = published});
 }
 
-/// How the probability of testing a light follows from its contribution.
+/// How the probability of testing a light depends on its contribution.
 enum class RouletteRule { veach, derived };
 
 template <>
 struct EnumTable<RouletteRule> {
   static constexpr std::array<EnumValue<RouletteRule>, 2> values{{
       {RouletteRule::veach, "veach",
-       "proportional to the contribution, 1 from the threshold sigma / sqrt(n) on (Veach 1997, "
+       "proportional to the contribution, reaching 1 at the threshold sigma / sqrt(n) (Veach 1997, "
        "10.4.1)"},
       {RouletteRule::derived, "derived",
-       "the minimum of variance times time, as for probabilistic visibility"},
+       "minimises variance times time, as for probabilistic visibility"},
   }};
 };
 
@@ -151,11 +151,11 @@ void describe(V& v, RouletteVisibilitySettings& s) {
 struct ProbabilisticVisibilitySettings : ChanceSettings {
   static constexpr std::string_view name = "probabilistic";
   static constexpr std::string_view doc =
-      "lights on whose visibility nearby cache points agree are tested with a low probability, "
-      "against a control variate of their mean (Nabata et al.)";
+      "lights whose visibility is equal at nearby cache points are tested with a low probability; "
+      "the control variate is the mean of these (Nabata et al.)";
 
   double epsilon_variance = 0.1;
-  // As published they are otherwise, see their tables:
+  // These differ from the published values, see their tables:
   bool clamp_negative = false;
   CacheLights cache_lights = CacheLights::lit;
   bool operator==(const ProbabilisticVisibilitySettings&) const = default;
@@ -171,7 +171,8 @@ void describe(V& v, ProbabilisticVisibilitySettings& s) {
   describe_chance(v, s);
   describe_cache_lights(v, s, "\"all\"");
   v("epsilon_variance", s.epsilon_variance,
-    {.doc = "least variance assumed for a visibility, even where all cache points agree (eq. 11)",
+    {.doc =
+         "smallest variance assumed for a visibility, even where all cache points agree (eq. 11)",
      .min = 0,
      .max = 0.25,
      .above_min = true});
@@ -230,17 +231,17 @@ template <class V>
 void describe(V& v, GatesVisibilitySettings& s) {
   v("falloff", s.falloff, {.doc = "how the light through a gate falls off towards its rim"});
   v("through_gates", s.through_gates,
-    {.doc =
-         "lights illuminate other clusters through gates; without, none but their own: less time, "
-         "and less light from afar (Noel 2015, 7.4.1)"});
+    {.doc = "lights illuminate other clusters through gates; otherwise only their own: faster, but "
+            "distant light is missing (Noel 2015, 7.4.1)"});
 }
 
 /// visibility: node_maps.
 struct NodeMapsVisibilitySettings {
   static constexpr std::string_view name = "node_maps";
   static constexpr std::string_view doc =
-      "no shadow rays: a light illuminates what its node of the filtered skeleton sees, by a cube "
-      "map of depths around each node, kept on disk (biased; Noel 2015, ch. 8)";
+      "no shadow rays: a light illuminates the points visible from its node of the filtered "
+      "skeleton, by a cube map of depths around each node, stored on disk (biased; Noel 2015, ch. "
+      "8)";
   static constexpr bool biased = true;
 
   int map_size = node_map_size;
@@ -257,7 +258,7 @@ void describe(V& v, NodeMapsVisibilitySettings& s) {
      .max = 7});
 }
 
-/// How the maps of all lights are made.
+/// How the maps of all lights are rendered.
 enum class ViewMapMethod { megaviews, many_lods, per_view, per_view_splats };
 
 template <>
@@ -269,35 +270,36 @@ struct EnumTable<ViewMapMethod> {
        "the scene's octree is traversed for each light (Hollaender et al. 2011)"},
       {ViewMapMethod::per_view, "per_view", "a ray for each texel of each light's map"},
       {ViewMapMethod::per_view_splats, "per_view_splats",
-       "every leaf of the scene's octree that a light may see is splatted into its map"},
+       "every leaf of the scene's octree that may be visible from a light is splatted into its "
+       "map"},
   }};
 };
 
-/// Which lights have a map of their own.
+/// Which lights have their own map.
 enum class ViewSharing { cells, none };
 
 template <>
 struct EnumTable<ViewSharing> {
   static constexpr std::array<EnumValue<ViewSharing>, 2> values{{
-      {ViewSharing::cells, "cells", "the lights in a leaf of their octree have one map"},
-      {ViewSharing::none, "none", "every light has a map of its own. Not for megaviews"},
+      {ViewSharing::cells, "cells", "the lights in a leaf of their octree share a map"},
+      {ViewSharing::none, "none", "every light has its own map. Not for megaviews"},
   }};
 };
 
-/// By what bounds of both nodes a pair is culled.
+/// The bounds of both nodes that decide whether a pair is culled.
 enum class ViewBounds { boxes, spheres };
 
 template <>
 struct EnumTable<ViewBounds> {
   static constexpr std::array<EnumValue<ViewBounds>, 2> values{{
       {ViewBounds::boxes, "boxes",
-       "the boxes of the leaves and of the lights below them: coarse nodes of the wall that a "
-       "light is on are behind it"},
+       "the boxes of the leaves and of the lights below them: then the coarse nodes of the wall "
+       "that carries a light lie behind it"},
       {ViewBounds::spheres, "spheres", "the spheres around their cubes and lights"},
   }};
 };
 
-/// How the octree of the lights is divided.
+/// How the octree of the lights is subdivided.
 enum class ViewSplit { facing, position };
 
 template <>
@@ -305,7 +307,7 @@ struct EnumTable<ViewSplit> {
   static constexpr std::array<EnumValue<ViewSplit>, 2> values{{
       {ViewSplit::facing, "facing",
        "by their positions into 64^3 cubes, then by the largest coordinate of their normals, then "
-       "by their positions again: lights of a node see less that others do not"},
+       "by their positions again: the lights of a node see more similar parts of the scene"},
       {ViewSplit::position, "position", "by their positions"},
   }};
 };
@@ -350,7 +352,7 @@ struct ViewMapsVisibilitySettings {
   double memory = 4;
   bool cull = true;
   ViewRays rays = ViewRays::single;
-  // As published they are otherwise, see their tables:
+  // These differ from the published values, see their tables:
   double node_texels = 1.75;
   double cover = 0.82;
   ViewSharing share = ViewSharing::cells;
@@ -361,7 +363,7 @@ struct ViewMapsVisibilitySettings {
 };
 template <class V>
 void describe(V& v, ViewMapsVisibilitySettings& s) {
-  v("method", s.method, {.doc = "how the maps are made"});
+  v("method", s.method, {.doc = "how the maps are rendered"});
   v("map_size", s.map_size,
     {.doc = "texels along a side of each half of a light's dual paraboloid map; 2 bytes each",
      .min = 8,
@@ -380,18 +382,17 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
      .max = 4,
      .published = "1"});
   v("cover", s.cover,
-    {.doc =
-         "a node fills the texels whose centres lie within this share of its sphere's radius, so "
-         "that objects thinner than a texel occlude little. Below 0.82 a wall of cubes has holes, "
-         "yet some scenes have the least error near 0.65. 0: it fills the texel that contains its "
-         "centre, however little it covers, and shadows are larger. Not for per_view",
+    {.doc = "a node fills the texels whose centres lie within this fraction of its sphere's "
+            "radius, so that objects thinner than a texel occlude little. Below 0.82 a wall of "
+            "cubes has holes, yet in some scenes the error is smallest near 0.65. 0: it fills the "
+            "texel that contains its centre, even if it covers little of it, and shadows are "
+            "larger. Not for per_view",
      .min = 0,
      .max = 1,
      .published = "0"});
   v("memory", s.memory,
     {.doc = "memory limit of the maps; if the maps of all lights need more, an iteration takes "
-            "several "
-            "passes, each with a part of the lights",
+            "several passes, each for part of the lights",
      .min = 0.0001,
      .max = 4096,
      .unit = "GiB"});
@@ -399,7 +400,7 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
     {.doc = "skip scene nodes that lie behind all lights of a node: the same picture, faster. Not "
             "for per_view"});
   v("share", s.share,
-    {.doc = "which lights share a map; the paper's many_lods, and its rays, have none that do",
+    {.doc = "which lights share a map; in the paper's many_lods, and with its rays, none do",
      .published = "\"none\""});
   v("bounds", s.bounds,
     {.doc = "bounds of nodes by which pairs are culled. Not for per_view",

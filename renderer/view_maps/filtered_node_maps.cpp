@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Increased when the same inputs give other bits.
+/// Increase it when the same inputs give different bits.
 constexpr std::uint32_t node_maps_version = 1;
 
 }  // namespace

@@ -10,14 +10,14 @@ namespace lacuna {
 
 namespace {
 
-/// A view node to render: the undecided nodes and the map of its parent.
+/// A view node to render, with the undecided scene nodes and the map of its parent.
 struct Work {
   std::uint32_t view;
   std::shared_ptr<const NodeLevels> waiting;
   std::vector<float> depths;
 };
 
-/// The views below one node, depth-first, with one list and one map for each level.
+/// Renders the views below one node, depth-first, with one list and one map per level.
 class Branch {
  public:
   Branch(const ViewRendering& rendering, const ViewTree& views, const UseMap& use)
@@ -45,8 +45,8 @@ class Branch {
 
  private:
   struct Level {
-    NodeLevels later;           // left by the node of this level, for its children
-    std::vector<float> depths;  // of one of them
+    NodeLevels later;           // deferred by the node of this level to its children
+    std::vector<float> depths;  // of one child
   };
   const ViewRendering& rendering_;
   const ViewTree& views_;
@@ -69,7 +69,7 @@ ManyViewsCounts render_views(const SceneNodes& scene, const ViewTree& views,
   NodeLevels whole;
   if (!scene.empty()) scene.append_root(whole[0]);
   ManyViewsCounts total;
-  std::mutex mutex;  // of total
+  std::mutex mutex;  // guards `total`
   const auto in_parallel = [&](std::size_t n, auto&& body) {
     pool.for_each(static_cast<int>(n), [&](int k) {
       const ManyViewsCounts counts = body(static_cast<std::size_t>(k));
@@ -89,7 +89,7 @@ ManyViewsCounts render_views(const SceneNodes& scene, const ViewTree& views,
     });
     return total;
   }
-  // Level by level until there is work for all threads; then each part separately.
+  // Proceeds level by level until there is work for all threads; then renders each part separately.
   constexpr std::size_t enough = 256;
   std::vector<Work> works{{rendering.fork(0), std::make_shared<const NodeLevels>(whole), empty}};
   bool forked = true;

@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// Nodes of one level of a scene's octree, as a structure of arrays: eight fill a register,
-/// whichever their parents are.
+/// Nodes of one level of a scene's octree, as a structure of arrays: any eight of them fill a
+/// register, whatever their parents.
 class NodeList {
  public:
   std::vector<float> x, y, z;              ///< centres of the cubes, in the grid of SceneNodes
@@ -18,10 +18,10 @@ class NodeList {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   void clear() { size_ = 0; }
-  /// Sets the number of nodes. Requires room for them.
+  /// Sets the number of nodes. Requires memory for them.
   void resize(std::size_t n) { size_ = n; }
 
-  /// Eight nodes from number `i` on. Those beyond the end are of no meaning.
+  /// Eight nodes from index `i`. Those beyond the end are undefined.
   struct Eight {
     Float8 x, y, z;
     Int8 node, shape;
@@ -31,7 +31,7 @@ class NodeList {
             Float8::load_unaligned(&z[i]), Int8::load_unaligned(&node[i]),
             Int8::load_unaligned(&shape[i])};
   }
-  /// Allocates memory for `more` nodes, so that that many can be appended.
+  /// Allocates memory for appending `more` nodes.
   void make_room(std::size_t more) {
     const std::size_t least = size_ + more + 8;  // whole registers are stored
     if (x.size() >= least) return;
@@ -39,14 +39,14 @@ class NodeList {
     for (auto* v : {&x, &y, &z}) v->resize(room);
     for (auto* v : {&node, &shape}) v->resize(room);
   }
-  /// Appends the elements of `e` that are set in `lanes`. Requires room for them.
+  /// Appends the elements of `e` selected by the mask `lanes`. Requires memory for them.
   void append(const Eight& e, unsigned lanes) {
     const Int8 order = to_front(lanes);
     store({permute(e.x, order), permute(e.y, order), permute(e.z, order), permute(e.node, order),
            permute(e.shape, order)},
           static_cast<std::size_t>(__builtin_popcount(lanes)));
   }
-  /// Appends the first `n` elements of `e`. Requires room for them.
+  /// Appends the first `n` elements of `e`. Requires memory for them.
   void store(const Eight& e, std::size_t n) {
     e.x.store_unaligned(&x[size_]);
     e.y.store_unaligned(&y[size_]);

@@ -14,7 +14,7 @@ constexpr int least_size = 8, most_size = 1024;
 
 /// A direction as a point on the cube around it.
 struct CubePoint {
-  int face;     // as NodeMaps::texels
+  int face;     // numbered as in NodeMaps::texels
   float u, v;   // in [-1, 1]
   float depth;  // along the face's axis
 
@@ -40,15 +40,15 @@ V3f direction(int face, float u, float v) {
   return d;
 }
 
-/// The centre of texel `i` along a side, in [-1, 1]; i may lie outside.
-float middle(int i, int size) {
+/// The centre of texel `i` along a side, in [-1, 1]; `i` may lie outside the face.
+float texel_centre(int i, int size) {
   return (2 * static_cast<float>(i) + 1) / static_cast<float>(size) - 1;
 }
 
-/// The part of a row of texels that the filter covers.
+/// The interval of a row of texels that the filter covers.
 struct Window {
   int first;
-  float low, high;  // in texels whose middles are whole numbers
+  float low, high;  // in texels, whose centres are integers
 
   Window(float at, int size, int filter) {
     const float centre = (at + 1) / 2 * static_cast<float>(size) - 0.5F;
@@ -56,16 +56,17 @@ struct Window {
     high = centre + static_cast<float>(filter) / 2;
     first = static_cast<int>(std::floor(low + 0.5F));
   }
-  /// The covered share of texel `i`.
+  /// The covered fraction of texel `i`.
   float weight(int i) const {
     const auto x = static_cast<float>(i);
     return std::max(0.0F, std::min(x + 0.5F, high) - std::max(x - 0.5F, low));
   }
 };
 
-/// Texels compared with a plane. Texels whose direction does not meet the plane are ignored.
+/// Sums over texels compared with a plane. Texels whose direction does not intersect the plane are
+/// skipped.
 struct Sums {
-  float seen = 0, all = 0;
+  float visible = 0, all = 0;
 };
 
 }  // namespace
@@ -79,8 +80,8 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int si
   const std::size_t texels = points.size() * maps.texels_of_point() + NodeMaps::margin;
   if (const std::uint64_t bytes = texels * sizeof(maps.texels[0]); bytes > byte_limit) {
     throw MemoryLimitError(
-        fmt::format("distance maps of {} nodes with {} x {} texels a face take {} bytes, of {} "
-                    "that are free: a smaller map_size, or an analysis of lower resolution",
+        fmt::format("distance maps of {} nodes with {} x {} texels per face need {} bytes, "
+                    "available are {}; lower map_size, or the resolution of the analysis",
                     points.size(), size, size, bytes, byte_limit));
   }
   maps.texels.resize(texels);
@@ -90,7 +91,8 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int si
     std::uint16_t* texel = maps.texels.data() + static_cast<std::size_t>(part) * n * n;
     for (int j = 0; j < size; ++j) {
       for (int i = 0; i < size; ++i, ++texel) {
-        const Ray ray{from, direction(part % NodeMaps::faces, middle(i, size), middle(j, size))};
+        const Ray ray{
+            from, direction(part % NodeMaps::faces, texel_centre(i, size), texel_centre(j, size))};
         Hit hit;
         if (!scene.rays().intersect(ray, hit)) continue;
         *texel = nearness.encode(hit.t);
@@ -105,18 +107,18 @@ namespace {
 /// Evaluates a node's map around a direction.
 class Comparison {
  public:
-  /// The plane: points p with p . n = h, seen from the node. `over_h`: maps.scale / h, larger where
-  /// points in front of the plane are to count as on it.
+  /// The plane: points p with p . n = h, relative to the node. `over_h`: maps.scale / h, increased
+  /// so that points slightly in front of the plane count as on it.
   Comparison(const NodeMaps& maps, std::size_t index, const V3f& n, float over_h)
       : maps_(maps),
         texels_(maps.texels.data() + index * maps.texels_of_point()),
         n_(n),
         over_h_(over_h) {}
 
-  /// The visible share of what the plane shows around direction `d`.
+  /// The visible fraction of the plane around direction `d`.
   float share(const V3f& d, int filter) const {
     const Sums sums = around(CubePoint(d), filter);
-    return sums.all > 0 ? sums.seen / sums.all : 0;
+    return sums.all > 0 ? sums.visible / sums.all : 0;
   }
 
  private:
@@ -127,7 +129,7 @@ class Comparison {
     Sums sums;
     for (int j = down.first; j <= down.first + filter; ++j) {
       for (int i = across.first; i <= across.first + filter; ++i) {
-        add(direction(p.face, middle(i, maps_.size), middle(j, maps_.size)),
+        add(direction(p.face, texel_centre(i, maps_.size), texel_centre(j, maps_.size)),
             across.weight(i) * down.weight(j), sums);
       }
     }
@@ -147,21 +149,21 @@ class Comparison {
     const Float8 weight =
         max(0.0F, min(column + 0.5F, across.high) - max(column - 0.5F, across.low));
     // 1 / depth of the plane is linear on a face.
-    const V3f start = direction(face, middle(across.first, maps_.size), 0);
+    const V3f start = direction(face, texel_centre(across.first, maps_.size), 0);
     const float du = 2 / static_cast<float>(maps_.size) * n_[(face / 2 + 1) % 3] * over_h_;
     const Float8 first = Float8::load(steps.data()) * du + start.dot(n_) * over_h_;
-    Float8 seen = 0.0F, all = 0.0F;
+    Float8 visible = 0.0F, all = 0.0F;
     for (int j = down.first; j <= down.first + filter; ++j) {
-      const Float8 plane = first + middle(j, maps_.size) * n_[(face / 2 + 2) % 3] * over_h_;
+      const Float8 plane = first + texel_centre(j, maps_.size) * n_[(face / 2 + 2) % 3] * over_h_;
       const Float8 nearest = Float8::load_half(texel(face, across.first, j));
       const Float8 counts = keep_where(plane > 0, weight * down.weight(j));
       all = all + counts;
-      seen = seen + keep_where(plane >= nearest, counts);
+      visible = visible + keep_where(plane >= nearest, counts);
     }
-    return {reduce_add(seen), reduce_add(all)};
+    return {reduce_add(visible), reduce_add(all)};
   }
 
-  /// One texel in a direction which may lie beyond the face that it was made for.
+  /// Adds one texel in a direction that may lie beyond the face for which it was computed.
   void add(const V3f& d, float weight, Sums& sums) const {
     const CubePoint p(d);
     const auto place = [&](float at) {
@@ -171,7 +173,7 @@ class Comparison {
     const float plane = d.dot(n_) * over_h_ / p.depth;
     if (!(plane > 0)) return;
     sums.all += weight;
-    if (plane >= Nearness::decode(*texel(p.face, place(p.u), place(p.v)))) sums.seen += weight;
+    if (plane >= Nearness::decode(*texel(p.face, place(p.u), place(p.v)))) sums.visible += weight;
   }
 
   const NodeMaps& maps_;
@@ -185,8 +187,8 @@ class Comparison {
 float NodeView::seen(const V3f& x, const V3f& n) const {
   const V3f d = x - point_;
   const float h = d.dot(n);
-  if (!(h < 0)) return 0;  // the point lies behind the surface
-  // Plus half a texel's width: points closer to the plane count as on it.
+  if (!(h < 0)) return 0;  // the node lies behind the surface
+  // Increased by half a texel's width: points closer to the plane than that count as on it.
   const float over_h = maps_->scale * (1 + 1 / static_cast<float>(maps_->size)) / h;
   return Comparison(*maps_, index_, n, over_h).share(d, filter_);
 }
@@ -197,7 +199,7 @@ float NodeView::seen(const V3f& x) const {
 }
 
 float NodeView::open(const V3f& w) const {
-  // A plane behind all that a texel can hold but 0, which is 6e-8 and more (Nearness).
+  // A plane beyond every nonzero texel: these are at least 6e-8 (Nearness).
   constexpr float over_h = -1e-20F;
   return Comparison(*maps_, index_, -w, over_h).share(w, filter_);
 }

@@ -9,20 +9,20 @@
 
 namespace lacuna {
 
-/// Directions as texels of a dual paraboloid map (Brabec et al. 2002): two squares of
-/// `size` x `size` texels for the half spaces of positive and of negative x. All maps have the same
-/// orientation, so that nearby views can share texels (Kol et al. 2018, 3.1.3).
+/// Directions as texels of a dual paraboloid map (Brabec et al. 2002): two squares of `size` x
+/// `size` texels for the half spaces of positive and of negative x. All maps have the same
+/// orientation, so nearby views can share texels (Kol et al. 2018, 3.1.3).
 struct Paraboloid {
   int size;
 
   int texels() const { return 2 * size * size; }
 
-  /// Continuous texel coordinates; texel corners are at whole numbers.
+  /// Continuous texel coordinates; texel corners are at integers.
   struct TexelCoord {
     int half;    ///< 0: x >= 0
     float u, v;  ///< in [0, size]
   };
-  /// `d`: of any length above 0.
+  /// `d`: nonzero, of any length.
   TexelCoord coord(const V3f& d) const {
     const float scale = 1 / (d.length() + std::abs(d.x));
     return {d.x < 0 ? 1 : 0, coordinate(d.y * scale), coordinate(d.z * scale)};
@@ -35,11 +35,11 @@ struct Paraboloid {
   int index(int half, int i, int j) const { return (half * size + j) * size + i; }
   /// TexelCoord of eight directions.
   struct TexelCoord8 {
-    Int8 half;    ///< 0 or `size`: the square's first row
+    Int8 half;    ///< 0 or `size`: the first row of the square
     Float8 u, v;  ///< as TexelCoord
     Float8 scale;
   };
-  /// `length`: of each `d`.
+  /// `length`: the length of each `d`.
   TexelCoord8 coords(const Float8x3& d, Float8 length) const {
     const Float8 scale = Float8(1.0F) / (length + abs(d.x));
     return {keep_where(Float8(0.0F) > d.x, Int8(size)), coordinate(d.y * scale),
@@ -49,8 +49,8 @@ struct Paraboloid {
     const auto step = [&](Float8 at) { return min(max(truncate(at), Int8(0)), Int8(size - 1)); };
     return (p.half + step(p.v)) * Int8(size) + step(p.u);
   }
-  /// Whether small spheres of this radius, with centres at `p`, cover the centres of the texels
-  /// that contain their own centres.
+  /// Whether spheres of this small radius, with centres at `p`, cover the centres of the texels
+  /// that contain `p`.
   Mask8 covers_middle(const TexelCoord8& p, float radius) const {
     const auto off = [](Float8 at) { return at - floor(at) - Float8(0.5F); };
     const Float8 u = off(p.u), v = off(p.v);
@@ -77,9 +77,9 @@ struct Paraboloid {
     return {texel < size * size ? x : -x, u * side, v * side};
   }
 
-  /// Whether coord() gives a texel for some direction: all but those of the squares' corners.
+  /// Whether coord() returns the texel for some direction: all but those at the squares' corners.
   bool reachable(int texel) const {
-    // The point of the texel that is nearest to the centre of the square.
+    // The point of the texel nearest to the centre of the square.
     const auto nearest = [&](int i) {
       const float at = on_plane(static_cast<float>(i));
       return at < 0 ? std::min(0.0F, on_plane(static_cast<float>(i + 1))) : at;
@@ -89,8 +89,8 @@ struct Paraboloid {
     return u * u + v * v < 1 + 1e-5F;
   }
 
-  /// The image of a small sphere is at most 2 radius / distance * stretch(cosine) texels wide.
-  /// `cosine`: of the angle between its direction and the axis of its half, >= 0. Angles are
+  /// The image of a small sphere is at most 2 radius / distance * stretch(cosine) texels wide,
+  /// `cosine` >= 0 that of the angle between its direction and the axis of its half. Angles are
   /// stretched by 1 / (1 + cos) towards the rim.
   float stretch(float cosine) const { return static_cast<float>(size) / (2 * (1 + cosine)); }
 
@@ -98,17 +98,18 @@ struct Paraboloid {
   struct Rectangle {
     int v_first = 0, v_end = 0, u_first = 0, u_end = 0;
   };
-  /// A rectangle with all texels of a half whose centres lie in the cap around the unit direction
-  /// `w` whose half angle has this cosine and sine.
+  /// A rectangle that contains all texels of a half whose centres lie in the cap around unit `w`
+  /// with half angle of this cosine and sine.
   Rectangle cap(int half, const V3f& w, float cosine, float sine) const {
     const float x = half == 0 ? w.x : -w.x;
-    if (x < -sine) return {};  // behind the rim
-    // The projection is stereographic: the cap's image is the disk, or where it holds the opposite
-    // pole all but the disk, of a (y^2 + z^2) - 2 (y w.y + z w.z) + cosine - x <= 0.
+    if (x < -sine) return {};  // beyond the rim
+    // The projection is stereographic: the cap's image is the disk, or, if the cap contains the
+    // opposite pole, the complement of the disk, a (y^2 + z^2) - 2 (y w.y + z w.z) + cosine - x <=
+    // 0.
     const float a = cosine + x;
-    if (!(a > 1e-3F)) return {0, size, 0, size};  // nearly half of everything, or more
+    if (!(a > 1e-3F)) return {0, size, 0, size};  // nearly a hemisphere, or more
     const float scale = 1 / a;
-    // The first texel whose centre is at a coordinate or beyond it, a little more.
+    // The first texel whose centre is at or beyond a coordinate, with a rounding margin.
     const auto after = [&](float at, float rounding) {
       const float texel = std::ceil(coordinate(at) - 0.5F + rounding);
       return static_cast<int>(std::clamp(texel, 0.0F, static_cast<float>(size)));

@@ -7,12 +7,13 @@ namespace lacuna {
 
 namespace {
 
-constexpr std::uint32_t whole_cube = 0xf0f0f000;  // from the first sixteenth to the last
+constexpr std::uint32_t whole_cube =
+    0xf0f0f000;  // first sixteenth 0, last sixteenth 15 on each axis
 
 std::uint32_t low(std::uint32_t shape, int axis) { return shape >> (8 + 8 * axis) & 15; }
 std::uint32_t high(std::uint32_t shape, int axis) { return shape >> (12 + 8 * axis) & 15; }
 
-/// The shape of a node from those of its children, which are ordered by octant.
+/// The shape of a node from the shapes of its children, which are ordered by octant.
 std::uint32_t shape_of(std::uint32_t octants, const SceneNodes::Node* child) {
   std::array<std::uint32_t, 3> from{15, 15, 15}, to{0, 0, 0};
   for (unsigned o = 0; o < 8; ++o) {
@@ -71,7 +72,7 @@ void SceneNodes::append_children(const NodeList& from, int level, NodeList& to) 
     const std::uint32_t first = nodes_[from.node[i]].first_child;
     const unsigned octants = from.shape[i] & 0xff;
     const Int8 order = to_front(octants);
-    // Children follow one another.
+    // Children are contiguous.
     const auto* words = &nodes_[first].first_child;
     const Float8 a = as_float(Int8::load_unaligned(words));
     const Float8 b = as_float(Int8::load_unaligned(words + 8));

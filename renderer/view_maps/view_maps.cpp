@@ -14,15 +14,15 @@ namespace lacuna {
 void ViewMaps::resize(std::uint32_t leaves) {
   const std::size_t texels = std::size_t{leaves} * static_cast<std::size_t>(map_.texels());
   if (texels <= texels_.size()) return;
-  if (texels > texels_.capacity()) texels_ = {};  // before there is memory for others
+  if (texels > texels_.capacity()) texels_ = {};  // frees memory before allocating more
   require_free(double(texels - texels_.size()) * sizeof(std::uint16_t), [&] {
     return fmt::format(
         "view_maps: maps of 2 x {0} x {0} texels of {1} views; lower map_size, levels "
         "or light_paths",
         map_.size, leaves);
   });
-  // Numbers of lights differ a little between iterations. Room beyond `texels` takes memory only
-  // when it is used, and of the address space no more than require_free() leaves.
+  // The number of lights varies slightly between iterations. Capacity beyond `texels` takes memory
+  // only when it is used, and no more address space than require_free() leaves.
   if (texels > texels_.capacity()) texels_.reserve(texels + texels / 16);
   texels_.resize(texels);
 }
@@ -50,9 +50,10 @@ std::vector<MapTexel> map_texels(const Paraboloid& map) {
 
 namespace {
 
-/// The angle between the axis of the views' cone and the texel exceeds the sum of both half angles.
-bool unseen(const ViewTree::Node& v, const MapTexel& t) {
-  const bool narrow = v.sine * t.cosine + v.cosine * t.sine > 0;  // that sum is below pi
+/// Whether the texel is outside all fields of view: the angle between its direction and the axis of
+/// the views' cone exceeds the sum of both half angles.
+bool out_of_view(const ViewTree::Node& v, const MapTexel& t) {
+  const bool narrow = v.sine * t.cosine + v.cosine * t.sine > 0;  // the sum is below pi
   return narrow && v.n.dot(t.direction) < v.cosine * t.cosine - v.sine * t.sine;
 }
 
@@ -61,7 +62,7 @@ bool unseen(const ViewTree::Node& v, const MapTexel& t) {
 std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
                           std::span<const MapTexel> texels, bool packets, const ThreadPool& pool,
                           const UseMap& use) {
-  // Blocks of 4 x 2 texels, each a packet.
+  // Each packet is a block of 4 x 2 texels.
   std::vector<std::size_t> order(texels.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(double(texels.size()) / 2)));
@@ -69,14 +70,14 @@ std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
     const auto block = [side](std::size_t i) { return std::pair(i / side / 2, i % side / 4); };
     return block(a) < block(b);
   });
-  std::atomic<std::uint64_t> sent = 0;
+  std::atomic<std::uint64_t> traced = 0;
   pool.for_each(static_cast<int>(views.leaf_count()), [&](int k) {
     const auto leaf = static_cast<std::uint32_t>(k);
     const ViewTree::Node& v = views.node(views.first_leaf() + leaf);
     std::vector<Ray> own;
     std::vector<std::size_t> asked;
     for (const std::size_t i : order) {
-      if (!texels[i].reachable || unseen(v, texels[i])) continue;
+      if (!texels[i].reachable || out_of_view(v, texels[i])) continue;
       own.push_back({v.centre, texels[i].direction});
       asked.push_back(i);
     }
@@ -91,10 +92,10 @@ std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
     for (std::size_t i = 0; i < own.size(); ++i) {
       if (hit[i] != 0) depths[asked[i]] = hits[i].t;
     }
-    sent += own.size();
+    traced += own.size();
     use(leaf, depths);
   });
-  return sent;
+  return traced;
 }
 
 }  // namespace lacuna

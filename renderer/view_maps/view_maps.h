@@ -10,45 +10,45 @@
 
 namespace lacuna {
 
-/// A texel of a map as a cone.
+/// A map texel as a cone.
 struct MapTexel {
   V3f direction;       ///< through its centre, unit
-  float cosine, sine;  ///< of the angle from there to its corners
+  float cosine, sine;  ///< of the angle between direction and corners
   bool reachable;      ///< Paraboloid::reachable()
 };
 /// The cones of all texels of a map.
 std::vector<MapTexel> map_texels(const Paraboloid& map);
 
-/// The finished maps of all leaves of a view tree, as half floats: a texel of 16 x 16 spans an
-/// eighth of a right angle, within which a distance is far less certain than its eleven bits.
-/// Memory is kept from one tree to the next, so that the system clears its pages once.
+/// The complete maps of all leaves of a view tree, as half floats: a texel of 16 x 16 spans an
+/// eighth of a right angle, so a distance is far less certain than its 11 bits. Memory is reused
+/// for the next tree, so that the system clears its pages only once.
 class ViewMaps {
  public:
   /// `extent`: the largest distance, scene units.
   ViewMaps(int map_size, float extent) : map_{map_size}, nearness_(Nearness::within(extent)) {}
 
-  /// Makes room for `leaves` maps, each to be set before it is read. Throws MemoryLimitError if
-  /// there is no memory for them.
+  /// Allocates `leaves` maps; each must be set before it is read. Throws MemoryLimitError if there
+  /// is not enough memory.
   void resize(std::uint32_t leaves);
   const Paraboloid& map() const { return map_; }
-  /// Stores a map: for each texel its distance, or infinity. Several threads may set different
-  /// leaves.
+  /// Stores a map: the distance of each texel, or infinity. Different leaves may be set by several
+  /// threads at once.
   void set(std::uint32_t leaf, std::span<const float> depths);
-  /// scale() / distance; 0 where the texel shows nothing.
+  /// scale() / distance; 0 if the texel is empty.
   float nearness(std::uint32_t leaf, int texel) const;
   float scale() const { return nearness_.scale; }
-  /// Memory held, that of the most maps so far.
+  /// Allocated memory: that of the largest number of maps so far.
   std::size_t bytes() const { return texels_.size() * sizeof(texels_[0]); }
 
  private:
   Paraboloid map_;
   Nearness nearness_;
-  HugeVector<std::uint16_t> texels_;  // of the most maps so far
+  HugeVector<std::uint16_t> texels_;  // of the largest number of maps so far
 };
 
 /// Like render_views(), but traces a ray from the centre of each leaf's views through each texel
-/// that one of them may see: one map per view. `packets`: eight neighbouring rays at once. Returns
-/// the number of rays.
+/// that may be visible from one of them: one map per view. `packets`: eight neighbouring rays at
+/// once. Returns the number of rays.
 std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
                           std::span<const MapTexel> texels, bool packets, const ThreadPool& pool,
                           const UseMap& use);

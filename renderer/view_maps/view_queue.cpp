@@ -18,7 +18,7 @@ struct Pair {
 };
 bool by_view(const Pair& a, const Pair& b) { return a.view < b.view; }
 
-/// Appends the pairs of a view node with `nodes`.
+/// Appends pairs of a view node with each of `nodes`.
 void append_pairs(std::uint32_t view, const NodeList& nodes, std::vector<Pair>& to) {
   const auto whole = [](float at) { return static_cast<std::uint16_t>(at); };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -34,7 +34,8 @@ class ViewQueue {
     const std::size_t maps = views.tree().nodes.size() - first_;
     const std::size_t floats = maps * rendering.map_floats();
     require_free(double(floats) * sizeof(float), [&] {
-      return fmt::format("view_maps: breadth-first, maps of {} nodes; go depth_first", maps);
+      return fmt::format("view_maps: maps of {} nodes, breadth-first; use traversal depth_first",
+                         maps);
     });
     maps_.assign(floats, std::numeric_limits<float>::infinity());
     counts_.unfused_bytes = floats * sizeof(float);
@@ -76,7 +77,7 @@ class ViewQueue {
   }
 
   void fuse_one(std::uint32_t view, const UseMap& use) {
-    if (rendering_.fork(view) != view) return;  // has no map of its own
+    if (rendering_.fork(view) != view) return;  // it has no map of its own
     std::vector<float> handed(rendering_.map_floats());
     if (rendering_.is_leaf(view)) {
       rendering_.to_scene_units(map(view).first(rendering_.texels()), handed);
@@ -91,8 +92,8 @@ class ViewQueue {
     }
   }
 
-  /// What a part of a generation leaves for the next.
-  struct Left {
+  /// The pairs of the next generation from one part, and its counts.
+  struct PartResult {
     std::vector<Pair> pairs;
     ManyViewsCounts counts;
   };
@@ -100,14 +101,14 @@ class ViewQueue {
   /// `queue` is sorted by view, and so is the result.
   std::vector<Pair> next_generation(const std::vector<Pair>& queue, int generation) {
     const std::vector<std::size_t> ends = parts(queue);
-    std::vector<Left> left(ends.size());
+    std::vector<PartResult> results(ends.size());
     pool_.for_each(static_cast<int>(ends.size()), [&](int k) {
       const auto i = static_cast<std::size_t>(k);
       const std::size_t first = i == 0 ? 0 : ends[i - 1];
-      render({queue.data() + first, ends[i] - first}, generation, left[i]);
+      render({queue.data() + first, ends[i] - first}, generation, results[i]);
     });
     std::vector<Pair> next;
-    for (Left& part : left) {
+    for (PartResult& part : results) {
       next.insert(next.end(), part.pairs.begin(), part.pairs.end());
       counts_ += part.counts;
       part = {};
@@ -118,7 +119,7 @@ class ViewQueue {
     return next;
   }
 
-  /// Ends of parts of similar length; all pairs of a view are in one part.
+  /// Ends of parts of similar length; all pairs of a view belong to one part.
   std::vector<std::size_t> parts(const std::vector<Pair>& queue) const {
     const auto most = static_cast<std::size_t>(pool_.threads()) * 16;
     const std::size_t length = std::max<std::size_t>(64, queue.size() / most);
@@ -132,26 +133,27 @@ class ViewQueue {
     return ends;
   }
 
-  void render(std::span<const Pair> part, int generation, Left& left) {
+  void render(std::span<const Pair> part, int generation, PartResult& results) {
     NodeList own, later, children;  // of one view
     ViewRendering::Scratch scratch;
     for (std::size_t i = 0; i < part.size();) {
       const std::uint32_t view = part[i].view;
-      // A generation has as many subdivisions behind it as its number; the others were of views.
+      // The number of a generation is its number of subdivisions; those that were not of views were
+      // of the scene.
       const int level = generation - rendering_.depth(view);
       for (NodeList* list : {&own, &later, &children, &scratch.split}) list->clear();
       std::size_t n = 0;
       while (i + n < part.size() && part[i + n].view == view) ++n;
       gather(part.subspan(i, n), own);
       i += n;
-      rendering_.render_once(view, level, own, map(view), later, scratch, left.counts);
+      rendering_.render_once(view, level, own, map(view), later, scratch, results.counts);
       if (!scratch.split.empty()) {
         rendering_.scene().append_children(scratch.split, level, children);
       }
-      append_pairs(view, children, left.pairs);
+      append_pairs(view, children, results.pairs);
       const Octree::Node& node = views_.tree().nodes[view];
       for (std::uint32_t c = 0; c < node.children && !later.empty(); ++c) {
-        append_pairs(rendering_.fork(node.first_child + c), later, left.pairs);
+        append_pairs(rendering_.fork(node.first_child + c), later, results.pairs);
       }
     }
   }
@@ -172,7 +174,7 @@ class ViewQueue {
   const ViewRendering& rendering_;
   const ViewTree& views_;
   const ThreadPool& pool_;
-  std::uint32_t first_;  // of the view nodes that have maps
+  std::uint32_t first_;  // index of the first view node that has a map
   std::vector<float> maps_;
   ManyViewsCounts counts_;
 };

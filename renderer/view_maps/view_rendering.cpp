@@ -24,8 +24,8 @@ constexpr float nothing = std::numeric_limits<float>::infinity();
 
 /// The boxes of the leaves below eight nodes (SceneNodes::Node::shape), in the grid.
 struct Boxes8 {
-  Float8x3 centre;  ///< from the centres of the nodes' cubes
-  Float8x3 half;    ///< half the sizes
+  Float8x3 centre;  ///< relative to the centres of the nodes' cubes
+  Float8x3 half;    ///< half the side lengths
 
   Boxes8(Int8 shape, float half_side) {
     const auto axis = [&](int bit, Float8& middle, Float8& size) {
@@ -47,13 +47,13 @@ struct ViewRendering::Visit {
   V3f centre;
   float radius;
   V3f n;
-  float cosine, sine2;  // of the half angle of the normals' cone, and the square of its sine
-  /// Of n' in the normals' cone, the largest |n'| in each coordinate.
+  float cosine, sine2;  // of the half angle of the normals' cone; square of its sine
+  /// For each coordinate k, the largest |n'_k| over all n' in the normals' cone.
   V3f widest;
-  float width;  // how far views lie before or behind the centre, along any n'
+  float width;  // largest distance of views from the centre along any n'
   bool everywhere;
   bool leaf;
-  int depth;  // forks above
+  int depth;  // number of forks above
 };
 
 ViewRendering::ViewRendering(const SceneNodes& scene, const ViewTree& views,
@@ -99,16 +99,16 @@ inline ViewRendering::Visit ViewRendering::visit(std::uint32_t view) const {
   if (v.everywhere || !settings_.boxes) return v;
   for (int k = 0; k < 3; ++k) {
     const float n = std::min(1.0F, std::abs(v.n[k]));
-    // cos(angle to the axis - half angle of the cone); within the cone it is 1.
+    // cos(angle to the axis - half angle of the cone); 1 inside the cone.
     if (n < v.cosine) v.widest[k] = n * v.cosine - std::sqrt(1 - n * n) * node.cosine;
   }
   v.width = std::min(v.width, v.widest.dot(node.half) / unit);
   return v;
 }
 
-/// No view below sees any part of a scene node: for no n' in the cone of their normals, and from no
-/// place x of a view, a point p of the node has n' (p - x) > 0. Of p - x that is the difference of
-/// both centres plus what either centre may be off, by the boxes, or by the spheres (Fig. 4; the
+/// Whether no view below sees any part of a scene node: for no n' in the cone of their normals, no
+/// position x of a view and no point p of the node is n' (p - x) > 0. p - x is the difference of
+/// both centres plus the deviations from them, bounded by the boxes or by the spheres (Fig. 4; the
 /// angle of the cone that no view sees is below a right angle here). The difference d lies beyond
 /// all planes if |d| cos(angle to n - half angle of the cone) is negative.
 inline unsigned ViewRendering::culled(const Visit& v, int level, const NodeList::Eight& e,
@@ -121,7 +121,7 @@ inline unsigned ViewRendering::culled(const Visit& v, int level, const NodeList:
     length2 = lacuna::length2(centre);
     off = dot(box.half, Float8x3{v.widest.x, v.widest.y, v.widest.z}) + Float8(v.width);
   }
-  constexpr float rounding = 1 + 1e-5F, margin = 1.0F / 256;  // of half a leaf's side
+  constexpr float rounding = 1 + 1e-5F, margin = 1.0F / 256;  // in units of half a leaf's side
   const Float8 along = dot(centre, Float8x3{v.n.x, v.n.y, v.n.z});
   const Float8 beyond =
       Float8(0.0F) - along * Float8(v.cosine) - (off * Float8(rounding) + Float8(margin));
@@ -129,15 +129,15 @@ inline unsigned ViewRendering::culled(const Visit& v, int level, const NodeList:
   return movemask(beyond > Float8(0.0F) && beyond * beyond > across2 * Float8(v.sine2));
 }
 
-inline void ViewRendering::look(const Visit& v, int level, const NodeList& nodes,
-                                std::span<float> depths, NodeList& later, Scratch& scratch,
-                                ManyViewsCounts& counts) const {
+inline void ViewRendering::render_level(const Visit& v, int level, const NodeList& nodes,
+                                        std::span<float> depths, NodeList& later, Scratch& scratch,
+                                        ManyViewsCounts& counts) const {
   if (nodes.empty()) return;
   const bool scene_leaves = level == scene_.levels();
   const float radius = scene_.radius(level);
   const bool cull = settings_.cull && !v.everywhere;
-  // Fig. 6: a scene node is smaller than `node_texels` for all views below, and none of them is
-  // further from their centre than its size, so it fills the same texel in all of them.
+  // Fig. 6: the scene node is smaller than `node_texels` for all views below, and none of these is
+  // further from their centre than the node's size, so it covers the same texel in all of them.
   const bool can_share = (settings_.merge || scene_leaves) && v.radius <= radius;
   const float size = static_cast<float>(map_.size) / settings_.node_texels;
   const bool defer = !v.leaf && (scene_leaves || radius / 2 < v.radius);  // Fig. 8
@@ -168,8 +168,8 @@ inline void ViewRendering::look(const Visit& v, int level, const NodeList& nodes
           lanes & movemask(nearest > Float8(radius) && bound > Float8(radius * size) * distance);
       lanes &= ~same;
       same_texel += static_cast<std::size_t>(std::popcount(same));
-      // A node stands for the middle of its leaves: that of a cube which a wall cuts at one side
-      // is up to the cube's radius before the wall.
+      // A node is placed at the middle of its leaves: the middle of a cube that a wall crosses near
+      // one side is up to the cube's radius in front of the wall.
       const Float8x3 middle = d + Boxes8(e.shape, scene_.half_side(level)).centre;
       const Float8 depth = sqrt(length2(middle));
       const Paraboloid::TexelCoord8 coords = map_.coords(middle, depth);
@@ -211,8 +211,8 @@ void ViewRendering::render(std::uint32_t view, const NodeLevels& waiting, std::s
     NodeList& below = scratch.fresh[(l + 1) % 2];
     later[l].clear();
     scratch.split.clear();
-    look(v, level, waiting[l], depths, later[l], scratch, counts);
-    look(v, level, scratch.fresh[l % 2], depths, later[l], scratch, counts);
+    render_level(v, level, waiting[l], depths, later[l], scratch, counts);
+    render_level(v, level, scratch.fresh[l % 2], depths, later[l], scratch, counts);
     below.clear();
     if (!scratch.split.empty()) scene_.append_children(scratch.split, level, below);
   }
@@ -223,13 +223,13 @@ void ViewRendering::render_once(std::uint32_t view, int level, const NodeList& n
                                 std::span<float> depths, NodeList& later, Scratch& scratch,
                                 ManyViewsCounts& counts) const {
   const std::uint64_t splats = counts.splats;
-  look(visit(view), level, nodes, depths, later, scratch, counts);
+  render_level(visit(view), level, nodes, depths, later, scratch, counts);
   counts.sharing += (counts.splats - splats) * views_.node(view).views;
 }
 
-/// For leaves from number `first` on fills all texels whose centre the sphere covers (3.2.4); as
-/// published, also that of its centre. A leaf whose cube the view is in fills none: it would hide
-/// half of all directions, and where in the cube its surface is, is not known.
+/// For leaves from index `first`, fills all texels whose centre the sphere covers (3.2.4); as
+/// published, also the texel of its centre. Skips a leaf whose cube contains the view: it would
+/// occlude half of all directions, and the position of its surface in the cube is unknown.
 void ViewRendering::fill(const Visit& v, const NodeList& nodes, std::size_t first,
                          std::span<float> depths) const {
   const float whole = scene_.radius(scene_.levels());
@@ -252,7 +252,8 @@ void ViewRendering::fill(const Visit& v, const NodeList& nodes, std::size_t firs
   }
 }
 
-/// Eight texels at a time, some of them beside the rectangle, where the cap is not.
+/// Processes eight texels at a time, including some beside the rectangle, which lie outside the
+/// cap.
 inline void ViewRendering::fill_cap(int half, const Paraboloid::Rectangle& r, const V3f& w,
                                     float cosine, float distance, std::span<float> depths) const {
   const Float8x3 axis{w.x, w.y, w.z};

@@ -13,17 +13,17 @@ namespace lacuna {
 struct ManyViewsCounts {
   std::uint64_t pairs = 0;    ///< processed pairs of a scene node and a view node
   std::uint64_t culled = 0;   ///< pairs that were culled
-  std::uint64_t splats = 0;   ///< scene nodes that were rendered
-  std::uint64_t large = 0;    ///< splats of leaves that may fill several texels
+  std::uint64_t splats = 0;   ///< rendered scene nodes
+  std::uint64_t large = 0;    ///< splats of leaves that may cover several texels
   std::uint64_t sharing = 0;  ///< single views that share a splat, summed over splats
-  /// Pairs by the number of subdivisions that led to them.
+  /// Number of pairs by the number of preceding subdivisions.
   std::array<std::uint64_t, 2 * Octree::most_levels + 1> generations{};
-  /// Of a breadth-first traversal: the largest size of its queue and of its maps of view nodes, and
+  /// Breadth-first traversal only: the largest size of its queue and of its maps of view nodes, and
   /// the CPU time of copying the maps down.
   std::uint64_t queue_bytes = 0, unfused_bytes = 0;
   double fusion_seconds = 0;
 
-  /// Largest number of pairs in a breadth-first queue, which holds one generation at a time.
+  /// Largest number of pairs in a breadth-first queue, which contains one generation at a time.
   std::uint64_t queue_peak() const {
     return *std::max_element(generations.begin(), generations.end());
   }
@@ -34,13 +34,13 @@ struct ManyViewsCounts {
 struct ManyViewsSettings {
   int map_size = 16;  ///< texels along a side of each paraboloid
   /// Largest diameter, in texels, of a node's sphere that is rendered as one texel, > 0; 1 in the
-  /// paper. The image of a leaf's cube is as wide as its sphere's over sqrt(3).
+  /// paper. The image of a leaf's cube is as wide as that of its sphere over sqrt(3).
   float node_texels = 1;
-  /// In [0, 1]: a node fills the texels whose centres lie within this share of its sphere's radius;
-  /// 0: the texel that contains its own centre, as in the paper.
+  /// In [0, 1]: a node fills the texels whose centres lie within this fraction of its sphere's
+  /// radius; 0: the texel that contains its centre, as in the paper.
   float cover = 0;
-  bool share = true;  ///< false: every view leaf by itself, ManyLoDs (Hollaender et al. 2011)
-  bool merge = true;  ///< false: every leaf is rendered, no inner node
+  bool share = true;  ///< false: every view leaf separately, as ManyLoDs (Hollaender et al. 2011)
+  bool merge = true;  ///< false: only leaves are rendered, no inner nodes
   bool cull = true;
   /// Culls a scene node by the box of the leaves below it and the box of the views; false: by the
   /// spheres of both nodes, as in the paper.
@@ -52,36 +52,38 @@ struct ManyViewsSettings {
 using NodeLevels = std::array<NodeList, Octree::most_levels + 1>;
 
 /// Renders nodes of a scene into the map of one view node at a time (Kol et al. 2018, 3.2), level
-/// by level, eight scene nodes at once. Lengths are in the grid of SceneNodes, those of maps too.
+/// by level, eight scene nodes at once. Lengths, including those in maps, are in the grid of
+/// SceneNodes.
 class ViewRendering {
  public:
-  /// The references outlive it.
+  /// The references must outlive this.
   ViewRendering(const SceneNodes& scene, const ViewTree& views, const ManyViewsSettings& settings);
 
   const SceneNodes& scene() const { return scene_; }
-  /// Length of a map in floats: its texels, rounded up to whole vectors of eight, and one more.
+  /// Length of a map in floats: its texels, rounded up to whole vectors of eight, and one more
+  /// vector.
   std::size_t map_floats() const { return x_.size(); }
   std::size_t texels() const { return static_cast<std::size_t>(map_.texels()); }
   bool is_leaf(std::uint32_t view) const { return views_.tree().nodes[view].children == 0; }
-  /// The first node at or below `view` that has several children, or none: those between have the
-  /// same views, and so the same bounds and the same map.
+  /// The first node at or below `view` with several children, or none: the nodes between have the
+  /// same views, so the same bounds and the same map.
   std::uint32_t fork(std::uint32_t view) const;
-  /// Number of subdivisions of views before a view node.
+  /// Number of view subdivisions above a view node.
   int depth(std::uint32_t view) const { return settings_.share ? depth_[view] : 0; }
 
-  /// Memory of a traversal, which render() uses anew each time.
+  /// Memory of a traversal, which each render() reuses.
   struct Scratch {
-    NodeList split;                     ///< nodes of a level that are subdivided
-    std::array<NodeList, 2> fresh;      ///< their children, and those of the level above
+    NodeList split;                     ///< nodes of a level to subdivide
+    std::array<NodeList, 2> fresh;      ///< children of these, alternating between levels
     std::vector<std::uint32_t> texels;  ///< splats of a level
     std::vector<float> distances;       ///< of the splats
   };
-  /// Renders the scene nodes `waiting`, with all nodes below them, into the map of a view node,
+  /// Renders the scene nodes `waiting`, and all nodes below them, into the map of a view node,
   /// which is a fork(). Replaces `later` by the nodes that the views below must decide.
   void render(std::uint32_t view, const NodeLevels& waiting, std::span<float> depths,
               NodeLevels& later, Scratch& scratch, ManyViewsCounts& counts) const;
-  /// render() for nodes of one level, without what is below them: appends nodes that are to be
-  /// subdivided for this view node to scratch.split, others that it cannot decide to `later`.
+  /// render() for nodes of one level, without the nodes below them: appends nodes to subdivide for
+  /// this view node to scratch.split, and others that it cannot decide to `later`.
   void render_once(std::uint32_t view, int level, const NodeList& nodes, std::span<float> depths,
                    NodeList& later, Scratch& scratch, ManyViewsCounts& counts) const;
 
@@ -97,8 +99,8 @@ class ViewRendering {
   Visit visit(std::uint32_t view) const;
   unsigned culled(const Visit& v, int level, const NodeList::Eight& e, const Float8x3& d,
                   Float8 length2) const;
-  void look(const Visit& v, int level, const NodeList& nodes, std::span<float> depths,
-            NodeList& later, Scratch& scratch, ManyViewsCounts& counts) const;
+  void render_level(const Visit& v, int level, const NodeList& nodes, std::span<float> depths,
+                    NodeList& later, Scratch& scratch, ManyViewsCounts& counts) const;
   void fill(const Visit& v, const NodeList& nodes, std::size_t first,
             std::span<float> depths) const;
   void fill_cap(int half, const Paraboloid::Rectangle& r, const V3f& w, float cosine,
@@ -108,8 +110,8 @@ class ViewRendering {
   const ViewTree& views_;
   ManyViewsSettings settings_;
   Paraboloid map_;
-  std::vector<float> x_, y_, z_;     // of the directions of the texels
-  std::vector<std::uint8_t> depth_;  // of each view node, forks above it
+  std::vector<float> x_, y_, z_;     // components of the texels' directions
+  std::vector<std::uint8_t> depth_;  // number of forks above each view node
 };
 
 }  // namespace lacuna

@@ -10,7 +10,7 @@ namespace lacuna {
 
 namespace {
 
-/// Box and normals of the views below a node, from the leaves up.
+/// Box and normals of the views below a node, accumulated from the leaves up.
 struct Sum {
   V3f low{std::numeric_limits<float>::infinity()};
   V3f high{-std::numeric_limits<float>::infinity()};
@@ -98,11 +98,11 @@ void ViewTree::bound(std::span<const View> views) {
     const Octree::Node& node = tree_.nodes[i];
     for (std::uint32_t c = 0; c < node.children; ++c) sums[i].add(sums[node.first_child + c]);
   }
-  std::vector<float> angles(nodes_.size(), 0.0F);  // of the normals around n
+  std::vector<float> angles(nodes_.size(), 0.0F);  // largest angle between the normals and n
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Sum& s = sums[i];
     const V3f centre = (s.low + s.high) * 0.5F;
-    // Rounded up, so that every view lies within.
+    // Rounded up, so that every view lies inside.
     const float radius = (s.high - s.low).length() * 0.5F;
     nodes_[i].centre = centre;
     nodes_[i].radius = radius * (1 + 1e-6F);

@@ -24,21 +24,22 @@ ProbabilisticVisibility::At ProbabilisticVisibility::at(const ShadingPoint& poin
 
 void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& terms,
                                      VisibilityEstimate& d) const {
-  const std::uint64_t known = points_.expected(at.near, block, d.untested);  // q
+  const std::uint64_t tested = points_.expected(at.near, block, d.untested);  // q
   const auto least = static_cast<float>(settings_.epsilon_variance);
-  constexpr float unknown = std::numeric_limits<float>::infinity();  // such lights are tested
+  constexpr float unknown =
+      std::numeric_limits<float>::infinity();  // lights of unknown visibility are tested
   const TestProbability chance = at.chance;
-  TestSampler keys;
+  TestSampler sampler;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 q = d.untested.eight(k);
     const Float8 t = terms.luminance.eight(k);
-    const Mask8 is_known = mask_from_bits(static_cast<unsigned>(known >> (8 * k) & 0xff));
-    const Float8 var = select(is_known, max(least, q * (1 - q)), unknown);
-    keys.set(k, chance.of(t, var, terms.weight), t);
+    const Mask8 is_tested = mask_from_bits(static_cast<unsigned>(tested >> (8 * k) & 0xff));
+    const Float8 var = select(is_tested, max(least, q * (1 - q)), unknown);
+    sampler.set(k, chance.of(t, var, terms.weight), t);
   }
-  d.tests = keys.draw(settings_.draws, at.rng);
+  d.tests = sampler.draw(settings_.draws, at.rng);
   for_each_bit(d.tests, [&](int i) {
-    const float x = keys.probability(i);
+    const float x = sampler.probability(i);
     d.untested[i] *= (x - 1) / x;
     d.gain[i] = 1 / x;
   });

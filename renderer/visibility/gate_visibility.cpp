@@ -31,7 +31,7 @@ void GateVisibility::prepare(const PrepareContext& context) {
     cluster_of_.push_back(clusters.of_node[n]);
   }
   clusters_ = clusters.count;
-  if (!settings_.through_gates) return;  // and no gates are made
+  if (!settings_.through_gates) return;  // gates are not built
   const VisibilityGates& all = space.gates();
   first_ = all.first;
   for (const std::uint32_t i : all.by_cluster) {
@@ -42,7 +42,7 @@ void GateVisibility::prepare(const PrepareContext& context) {
   }
 }
 
-/// The share of light along unit `w` that passes a gate.
+/// The fraction of light in unit direction `w` that passes a gate.
 Float8 GateVisibility::through(const Gate& gate, const Float8x3& to_gate, const Float8x3& w) const {
   const Float8x3 axis{gate.axis.x, gate.axis.y, gate.axis.z};
   const Float8 t = dot(to_gate, axis) / dot(w, axis);

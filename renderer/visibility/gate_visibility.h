@@ -10,10 +10,10 @@ namespace lacuna {
 
 /// visibility: gates (Noel 2015, ch. 7). A light illuminates all of its own visibility cluster, and
 /// other clusters through the disks between its cluster and theirs, without occlusion beyond the
-/// disks, or not at all (GatesVisibilitySettings::through_gates). Lights and points that belong to
-/// no cluster are tested by shadow rays. The thesis leaves open what is decided here:
+/// disks, or not at all (GatesVisibilitySettings::through_gates). Lights and points without a
+/// cluster are tested by shadow rays. Decisions that the thesis leaves open:
 /// - The cone of a light and a gate has the disk as its base, at any angle.
-/// - Where the cones of several gates overlap, the largest value is taken, so V <= 1.
+/// - Where the cones of several gates overlap, the largest value is used, so V <= 1.
 class GateVisibility : public VisibilityBase {
  public:
   static constexpr bool needs_space() { return true; }
@@ -33,7 +33,7 @@ class GateVisibility : public VisibilityBase {
   At at(const ShadingPoint& point, const IterationContext&) const {
     return {point.vertex->surface.x, cluster(node_of(*lookup_, point))};
   }
-  /// Without gates, a light of another cluster.
+  /// Whether gates are disabled and the lights belong to another cluster.
   bool hides(const At& at, std::size_t block) const {
     const std::uint32_t cluster = lights_->group(block);
     return !settings_.through_gates && cluster != at.cluster && cluster != no_group &&
@@ -56,9 +56,9 @@ class GateVisibility : public VisibilityBase {
 
   GatesVisibilitySettings settings_;
   std::optional<SurfaceLookup> lookup_;
-  std::vector<std::uint32_t> cluster_of_;  // of each node of the skeleton
+  std::vector<std::uint32_t> cluster_of_;  // of each skeleton node
   std::uint32_t clusters_ = 0;
-  std::vector<std::uint32_t> first_;  // of each cluster in gates_, and the end
+  std::vector<std::uint32_t> first_;  // of each cluster: first index in gates_; and the end
   std::vector<Gate> gates_;           // each gate once for each of its two clusters
   const VplSet* lights_ = nullptr;
 };

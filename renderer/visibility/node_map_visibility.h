@@ -9,9 +9,9 @@
 
 namespace lacuna {
 
-/// visibility: node_maps. All lights of a node of the filtered skeleton have the visibility of the
-/// node: shading points that the node does not see skip all of them (Noel 2015, ch. 8, eq. 161).
-/// Lights that belong to no node are tested by shadow rays.
+/// visibility: node_maps. All lights of a node of the filtered skeleton share the visibility of the
+/// node: shading points not visible from the node skip all of them (Noel 2015, ch. 8, eq. 161).
+/// Lights without a node are tested by shadow rays.
 class NodeMapVisibility : public VisibilityBase {
  public:
   static constexpr bool needs_space() { return true; }
@@ -23,7 +23,7 @@ class NodeMapVisibility : public VisibilityBase {
   Counters begin(const LightPass& pass);
   struct At {
     V3f x, n;                 // n on the side of the eye
-    std::vector<float> seen;  // by each of `views_`; below 0: not yet computed
+    std::vector<float> seen;  // visible fraction, by index in `views_`; negative: not computed yet
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
   bool hides(At& at, std::size_t block) const {
@@ -46,7 +46,7 @@ class NodeMapVisibility : public VisibilityBase {
   std::vector<V3f> nodes_;  // scene units
   std::optional<SurfaceLookup> lookup_;
   std::shared_ptr<const NodeMaps> maps_;
-  std::vector<NodeView> views_;         // of the nodes that have lights
+  std::vector<NodeView> views_;         // of nodes with lights
   std::vector<std::uint32_t> view_of_;  // of each block of lights
 };
 

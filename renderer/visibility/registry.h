@@ -10,7 +10,8 @@
 
 namespace lacuna {
 
-/// All visibility strategies. A new one is a row here and an alternative of VisibilitySettings.
+/// All visibility strategies. A new strategy is a row here and an alternative of
+/// VisibilitySettings.
 using VisibilityRegistry = Registry<Entry<ExactVisibilitySettings, ExactVisibility>,
                                     Entry<NoVisibilitySettings, NoVisibility>,
                                     Entry<RouletteVisibilitySettings, RouletteVisibility>,

@@ -12,8 +12,8 @@ Counters RouletteVisibility::begin(const LightPass& pass) {
 RouletteVisibility::At RouletteVisibility::at(const ShadingPoint& point,
                                               const IterationContext& context) const {
   const bool derived = settings_.rule == RouletteRule::derived;
-  const float besides = other_rays_ + static_cast<float>(settings_.term_cost);
-  return {{.k = derived ? besides : besides + 1,
+  const float other_time = other_rays_ + static_cast<float>(settings_.term_cost);
+  return {{.k = derived ? other_time : other_time + 1,
            .c = derived ? 1.0F : 0.0F,
            .least = static_cast<float>(settings_.epsilon_probability),
            .over_sigma = 1 / (settings_.variance == VarianceOf::point
@@ -25,14 +25,14 @@ RouletteVisibility::At RouletteVisibility::at(const ShadingPoint& point,
 void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms,
                                 VisibilityEstimate& d) const {
   const TestProbability chance = at.chance;
-  TestSampler keys;
+  TestSampler sampler;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 t = terms.luminance.eight(k);
-    keys.set(k, chance.of(t, 1, terms.weight), t);
+    sampler.set(k, chance.of(t, 1, terms.weight), t);
   }
-  d.tests = keys.draw(settings_.draws, at.rng);
+  d.tests = sampler.draw(settings_.draws, at.rng);
   d.untested.v.fill(0);
-  for_each_bit(d.tests, [&](int i) { d.gain[i] = 1 / keys.probability(i); });
+  for_each_bit(d.tests, [&](int i) { d.gain[i] = 1 / sampler.probability(i); });
 }
 
 }  // namespace lacuna

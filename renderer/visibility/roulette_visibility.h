@@ -7,7 +7,7 @@
 namespace lacuna {
 
 /// visibility: roulette. A light is tested with probability p: the estimate is v / p if tested,
-/// else 0. The variance of contributions, which p depends on, is measured at a few shading points.
+/// else 0. p depends on the variance of contributions, which is measured at a few shading points.
 class RouletteVisibility : public VisibilityBase {
  public:
   explicit RouletteVisibility(const RouletteVisibilitySettings& settings)
@@ -26,7 +26,7 @@ class RouletteVisibility : public VisibilityBase {
  private:
   RouletteVisibilitySettings settings_;
   CachePoints points_;
-  float other_rays_ = 0;  // eye rays of a light
+  float other_rays_ = 0;  // eye rays per light
 };
 
 }  // namespace lacuna

@@ -5,10 +5,10 @@
 
 namespace lacuna {
 
-/// The node of a light; no_node for a light at infinity or far from all empty space.
+/// The skeleton node of a light; no_node for a light at infinity or far from all empty space.
 inline std::uint32_t node_of(const SurfaceLookup& lookup, const VplGeometry& light) {
   if (light.infinite) return no_node;
-  // A point light lies in empty space: its own voxel is looked up for any normal.
+  // A point light lies in empty space: its own voxel is found for any normal.
   const V3d n(light.n == V3f(0.0F) ? V3f(0, 0, 1) : light.n);
   return lookup.node(V3d(light.x), n, n);
 }

@@ -6,8 +6,8 @@ namespace lacuna {
 
 namespace {
 
-/// Views are this many radii of the octree's leaves in front of their surface: on a flat one, no
-/// leaf's sphere then rises above the horizon.
+/// Distance of views in front of their surface, in radii of the octree's leaves: on a flat surface
+/// no leaf's sphere then rises above the horizon.
 constexpr float before_surface = 2;
 
 constexpr std::uint32_t maps_between_stops = 256;
@@ -102,14 +102,14 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
 bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
   const V3f d = at.x - views_->node(views_->first_leaf() + leaf).centre;
   const bool rays = settings_.method == ViewMapMethod::per_view;
-  // The surface's leaves have their centres up to a radius before it.
+  // The centres of the surface's leaves lie up to a radius in front of it.
   const float h = -d.dot(at.n) - (rays ? 0 : cell_);
   if (!(h > 0)) return true;
   const int texel = maps_->map().texel(d);
   const MapTexel& t = texels_[static_cast<std::size_t>(texel)];
-  // 1 / distance of the surface's plane in the middle of the texel, where a ray saw it, or a node
-  // that covers the middle. What is nearer by less than half the texel's width, or half the width
-  // of the largest node that is one splat, counts as on the plane.
+  // 1 / distance of the surface's plane at the centre of the texel, as rendered by a ray, or by a
+  // node that covers the centre. Occluders closer by less than half the texel's width, or half the
+  // width of the largest node rendered as one splat, count as lying on the plane.
   const double width = rays ? 1 : std::max(1.0, settings_.node_texels);
   const float inverse = -t.direction.dot(at.n) * static_cast<float>(1 + width / settings_.map_size);
   return maps_->scale() * inverse >= maps_->nearness(leaf, texel) * h;

@@ -9,9 +9,9 @@
 
 namespace lacuna {
 
-/// visibility: view_maps (Kol et al. 2018). Every light has a small map of distances, rendered by
-/// traversing the octrees of the scene and of the lights together. Lights at infinity are tested by
-/// shadow rays.
+/// visibility: view_maps (Kol et al. 2018). Every light has a small map of distances, rendered by a
+/// simultaneous traversal of the octrees of the scene and of the lights. Lights at infinity are
+/// tested by shadow rays.
 class ViewMapVisibility : public VisibilityBase {
  public:
   static constexpr bool needs_space() { return true; }
@@ -41,14 +41,14 @@ class ViewMapVisibility : public VisibilityBase {
   std::unique_ptr<ViewTree> views_;
   std::unique_ptr<ViewMaps> maps_;
   std::vector<MapTexel> texels_;      // of a map
-  std::vector<std::uint32_t> first_;  // of each block of lights its first view
+  std::vector<std::uint32_t> first_;  // of each block of lights: its first view
   const VplSet* lights_ = nullptr;
   ManyViewsCounts counts_;
-  std::uint64_t queue_peak_ = 0;  // largest of all passes
-  std::uint64_t leaves_ = 0;      // of all passes of an iteration
+  std::uint64_t queue_peak_ = 0;  // largest over all passes
+  std::uint64_t leaves_ = 0;      // over all passes of an iteration
   int passes_ = 0;
   double scene_seconds_ = 0, tree_seconds_ = 0, map_seconds_ = 0;
-  double memory_seconds_ = 0;  // of allocating the maps, whose pages the system clears
+  double memory_seconds_ = 0;  // for allocating the maps, whose pages the system clears
 };
 
 }  // namespace lacuna

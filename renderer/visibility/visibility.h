@@ -6,19 +6,20 @@ namespace lacuna {
 
 /// Estimates the visibility V between shading points and virtual lights.
 ///
-/// - At, at(): its data of one shading point, made once for each point and pass.
-/// - decide(at, block, terms, d): the estimate for the lights of a block (Lanes::size of them;
-///   `terms.lit` marks those with a contribution). d.tests: the lights that a shadow ray tests;
+/// - At, at(): the strategy's data of one shading point, constructed once per point and pass.
+/// - decide(at, block, terms, d): the estimate for the lights of a block (Lanes::size lights;
+///   `terms.lit` marks those with a contribution). d.tests: the lights to test by a shadow ray;
 ///   d.untested: added to the estimate of every light; d.gain: weight of an unoccluded shadow ray.
 ///   The estimate of a light is untested + (tested ? gain V : 0); its expectation must be V for an
 ///   unbiased strategy.
-/// - hides(): no light of a block illuminates the point.
-/// - group(), passes(), begin(): the order of the lights, the passes they are divided into, and the
+/// - hides(): whether no light of a block illuminates the point.
+/// - group(), passes(), begin(): the order of the lights, their division into passes, and the
 ///   preparation of each pass.
-/// - clamps_negative(): negative pixels become black, which is biased.
+/// - clamps_negative(): whether negative pixels become black, which is biased.
 ///
-/// at(), decide() and hides() are const and are called by many threads; what is random in them
-/// comes from the context's counter-based generator, so that the bits do not depend on the threads.
+/// at(), decide() and hides() are const and are called by many threads; their random numbers come
+/// from the context's counter-based generator, so the result is bit-identical for any number of
+/// threads.
 template <class V>
 concept Visibility = Strategy<V> &&
     requires(V v, const V& k, const ShadingPoint& point, const Terms& terms,

@@ -6,20 +6,20 @@
 
 namespace lacuna {
 
-/// Defaults of the concept Visibility for a strategy that treats all lights alike.
+/// Defaults of the concept Visibility, for a strategy that treats all lights equally.
 struct VisibilityBase : StrategyBase {
   /// The group of a light; the lights of a group are consecutive.
   static std::uint32_t group(const VplGeometry&) { return 0; }
-  /// The ranges of blocks that are processed one after another; together, all blocks.
+  /// The ranges of blocks processed one after another; together they are all blocks.
   static std::vector<BlockRange> passes(const VplSet&) { return {{}}; }
   /// Called for each pass when the lights of an iteration are complete.
   static Counters begin(const LightPass&) { return {}; }
-  /// No light of `block` illuminates the point.
+  /// Whether no light of `block` illuminates the point.
   template <class At>
   static bool hides(At&, std::size_t /*block*/) {
     return false;
   }
-  /// Negative pixels become black.
+  /// Whether negative pixels become black.
   static bool clamps_negative() { return false; }
 };
 

@@ -7,7 +7,7 @@
 
 #include "renderer/images/image_codec.h"
 
-// The one source that knows OpenImageIO: the module of images.
+// The only source that uses OpenImageIO: the image module.
 
 namespace lacuna {
 namespace {
@@ -27,14 +27,14 @@ const char* reader_name(ImageFormat format) {
     case ImageFormat::tiff:
       return "tiff";
   }
-  throw std::runtime_error("no such format");
+  throw std::runtime_error("unknown format");
 }
 
-/// Without the prefix of the library's own and its line ends.
+/// Removes line ends at the end, and joins lines by semicolons.
 [[noreturn]] void fail(std::string message) {
   while (!message.empty() && message.back() == '\n') message.pop_back();
   std::replace(message.begin(), message.end(), '\n', ';');
-  throw std::runtime_error(message.empty() ? "no reason is known" : message);
+  throw std::runtime_error(message.empty() ? "unknown reason" : message);
 }
 
 std::unique_ptr<OIIO::ImageInput> reader_of(ImageFormat format) {
@@ -43,8 +43,8 @@ std::unique_ptr<OIIO::ImageInput> reader_of(ImageFormat format) {
   return reader;
 }
 
-/// A picture that was read, but not without a complaint, is not taken: what a JPEG lacks, the
-/// library makes up and only says so.
+/// Rejects a picture that was read with errors: the library fills in missing data of a JPEG and
+/// only reports it.
 void require_clean(const OIIO::ImageInput& reader, bool read) {
   if (!read || reader.has_error()) fail(reader.geterror());
 }
@@ -80,7 +80,7 @@ class OpenPicture final : public PictureFile {
     do {
       parts_.push_back(header_of(reader_->spec()));
     } while (reader_->seek_subimage(static_cast<int>(parts_.size()), 0));
-    reader_->geterror();  // that there are no more is no error
+    reader_->geterror();  // clears the error of the end of the file
   }
 
   const std::vector<PictureHeader>& parts() const override { return parts_; }
@@ -118,7 +118,7 @@ class OpenPicture final : public PictureFile {
     require_clean(*reader_, read);
   }
 
-  /// The library would scale integers to 0..1; EXR means their values.
+  /// Converts integers by value; the library would scale them to 0..1.
   static void to_float(float* values, std::size_t stride, const PictureHeader& header) {
     const std::size_t pixels =
         static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
@@ -134,8 +134,7 @@ class OpenPicture final : public PictureFile {
   std::vector<PictureHeader> parts_;
 };
 
-/// The bytes of what `spec` says and `rows` gives, in blocks of `count` rows, by the writer of that
-/// name.
+/// Encodes the picture of `spec` by the named writer, which takes `rows` in blocks of `count`.
 EncodedImage encode(const char* writer, const OIIO::ImageSpec& spec, int count,
                     const std::function<const void*(const RowBlock&)>& rows) {
   EncodedImage bytes;
@@ -157,7 +156,7 @@ EncodedImage encode(const char* writer, const OIIO::ImageSpec& spec, int count,
 class OpenImageIoCodec final : public ImageCodec {
  public:
   OpenImageIoCodec() {
-    OIIO::attribute("debug", 0);  // Debian's build would say on stderr what it leaves out
+    OIIO::attribute("debug", 0);  // keeps Debian's build from reporting skipped data on stderr
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", no_threads);
     OIIO::attribute("plugin_searchpath", "");
@@ -178,10 +177,10 @@ class OpenImageIoCodec final : public ImageCodec {
     if (!reader->open("memory", spec, reading_hints())) fail(reader->geterror());
     const int bits = static_cast<int>(8 * spec.format.size());
     if (spec.format != OIIO::TypeUInt8 && spec.format != OIIO::TypeUInt16) {
-      fail("its values have another type than 8 or 16 bits");
+      fail("its values have neither 8 nor 16 bits");
     }
     StoredTexels texels{spec.width, spec.height, spec.nchannels, bits, nullptr};
-    // Not set to zero: memory is used up only as texels come.
+    // Not set to zero: memory is committed only as texels arrive.
     texels.values = std::make_unique_for_overwrite<std::uint8_t[]>(spec.image_bytes());
     require_clean(*reader,
                   reader->read_image(0, 0, 0, spec.nchannels, spec.format, texels.values.get()));
@@ -194,14 +193,14 @@ class OpenImageIoCodec final : public ImageCodec {
     spec.channelnames = content.channels;
     spec.attribute("compression", "zip");
     for (const auto& [name, value] : content.texts) spec.attribute(name, value);
-    // The library writes the time of day unless there is a date. This one it leaves out: EXR has no
-    // integers of 64 bits.
+    // Without a date the library would write the time of day. It omits this one: EXR has no 64-bit
+    // integers.
     const std::uint64_t no_date = 0;
     spec.attribute("DateTime", OIIO::TypeUInt64, &no_date);
     if (content.channels.size() * spec.image_pixels() > worth_threads) {
       OIIO::attribute("exr_threads", static_cast<int>(std::thread::hardware_concurrency()));
     }
-    // Each 16 rows are compressed together, by a thread of their own.
+    // Each block of 16 rows is compressed by its own thread.
     constexpr std::uint64_t unit = 16;
     const std::uint64_t units = most_block_bytes / (unit * spec.scanline_bytes(true));
     const std::uint64_t rows = unit * std::max<std::uint64_t>(1, units);
@@ -217,12 +216,12 @@ class OpenImageIoCodec final : public ImageCodec {
   }
 
  private:
-  static constexpr int no_threads = -1;  // zero would mean one a core
-  /// Layers of every strategy of long paths: 3 for each pair of up to 128 and 128 vertices.
+  static constexpr int no_threads = -1;  // zero would mean one per core
+  /// Strategy layers of long paths: 3 for each pair of up to 128 and 128 vertices.
   static constexpr int most_channels = 1 << 16;
-  /// Values from which compressing takes longer than to start threads.
+  /// The number of values from which compression takes longer than starting threads.
   static constexpr std::size_t worth_threads = std::size_t{1} << 20;
-  /// Of the rows that are given at a time: the library hands no more to its threads, either.
+  /// The size of a block of rows: larger ones would not use more threads.
   static constexpr std::uint64_t most_block_bytes = std::uint64_t{16} << 20;
 };
 

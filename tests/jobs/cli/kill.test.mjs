@@ -199,7 +199,7 @@ test("the image module does not fit the limit of address space: exit 71, and it 
   await Promise.all([220, 280, 290, 300, 390, 400, 410, 2000].map(async (mebibytes) => {
     const { code, signal, err } = await runAfter(`ulimit -v ${mebibytes * 1024}`, folder, "compare", picture, picture);
     assert.equal(code, mebibytes < 2000 ? 71 : 0, `${mebibytes} MiB: ${signal} ${err}`);
-    if (code === 71) assert.match(err, /^lacuna: out of memory: .*images.so: .* do not fit the limit of memory \(ulimit -v/);
+    if (code === 71) assert.match(err, /^lacuna: out of memory: .*images.so: .* exceed the memory limit \(ulimit -v/);
   }));
 });
 

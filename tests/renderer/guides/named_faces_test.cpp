@@ -143,8 +143,9 @@ TEST(NamedFaces, PointsThatNameNoneAreRefused) {
   FaceIrradianceGuideSettings border;
   const std::vector<std::pair<std::array<double, 3>, std::string>> points{
       {{0, 0, 40}, "it lies outside the scene's grid"},
-      {{0.1, 0, 0}, "a surface meets its voxel, whose side is"},
-      {{-0.4, -0.4, -0.4}, "neither the camera nor a light is in its part of the space"},
+      {{0.1, 0, 0}, "a surface intersects its voxel, whose side is"},
+      {{-0.4, -0.4, -0.4},
+       "neither the camera nor a light is in its connected part of the empty space"},
   };
   for (const auto& [point, why] : points) {
     border.through = point;
@@ -164,7 +165,7 @@ TEST(NamedFaces, PointsThatNameNoneAreRefused) {
     p.eye({0, 0, 0.5}, {0, 0, -1}, 1.5);
     return std::move(p.data);
   };
-  EXPECT_NE(refusal(empty, through_portal({0, 0, 0})).find("names no portal"), std::string::npos);
+  EXPECT_NE(refusal(empty, through_portal({0, 0, 0})).find("selects no portal"), std::string::npos);
   EXPECT_EQ(refusal(empty, border), "");
 }
 

@@ -175,7 +175,7 @@ TEST(ImageRead, RadianceHdrOfOtherKindsIsRefused) {
     expect_contains(message, allowed);
   }
   expect_contains(image_refusal(write_white(folder, "EXPOSURE=1e-300\nEXPOSURE=1e-300\n")),
-                  "a product that a double can hold");
+                  "a product within double precision");
 }
 
 // Stored values are the light times all EXPOSURE and COLORCORR lines (Radiance file formats).
@@ -308,15 +308,15 @@ TEST(ImageRead, AnExrThatSaysTooMuchIsRefused) {
   const std::string tiles("\1\0\0\0\1\0\0\0\0", 9);
   expect_contains(
       refusal(32768, 32768, {.flags = 0x200, .attributes = {{{"tiles", "tiledesc", tiles}}}}),
-      "a.exr: is corrupt: it says that it has 1073741824 tiles");
-  expect_contains(refusal(1, 1, {.flags = 0x800}), "a.exr: is a deep image; allowed: flat ones");
+      "a.exr: is corrupt: it states 1073741824 tiles");
+  expect_contains(refusal(1, 1, {.flags = 0x800}), "a.exr: is a deep image; allowed: flat images");
   expect_contains(refusal(1, 1, {.attributes = {{{"type", "string", "deepscanline"}}}}),
                   "a deep image");
   expect_contains(refusal(2, 2, {.sampling = 2}),
                   "has channel \"B\" at less than full resolution, as luminance and chroma have");
   expect_contains(
       refusal(1, 1, {.attributes = {{{"Orientation", "int", std::string("\3\0\0\0", 4)}}}}),
-      "is stored turned or mirrored");
+      "is stored rotated or mirrored");
 }
 
 TEST(ImageRead, TheMagicDecidesAndNotTheName) {
@@ -386,12 +386,12 @@ TEST(ImageRead, OtherTiffsAreRefused) {
   expect_contains(refusal({{257, {0}}}), "is 2 x 0 pixels");
   expect_contains(refusal({{277, {5}}}), "has 5 channels; allowed: 1, 3, 4");
   expect_contains(refusal({{278, {0}}}), "is corrupt: its blocks are");
-  expect_contains(refusal({{273, {8, 8}}}), "is corrupt: it has 2 blocks, its size asks for 1");
+  expect_contains(refusal({{273, {8, 8}}}), "is corrupt: it has 2 blocks, its size requires 1");
   expect_contains(refusal({{273, {4000}}}), "is corrupt: it ends early");
   expect_contains(refusal({{256, {2000}}}), "is corrupt: 24 bytes cannot hold its 2000 x 1 pixels");
   expect_contains(refusal({{256, {30000}}, {257, {30000}}, {259, {5}}, {278, {30000}}}),
                   "cannot hold");
-  expect_contains(refusal({{274, {3}}}), "is stored turned or mirrored");
+  expect_contains(refusal({{274, {3}}}), "is stored rotated or mirrored");
   const test::Bytes whole = test::make_tiff(2, 1, 3, {1, 2, 3, 4, 5, 6});
   for (std::size_t n = 4; n < whole.size(); ++n) {
     const test::Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
