@@ -17,6 +17,8 @@ struct PhotonTracing : PathLengths, RadiusSettings {
   PhotonKernel kernel = PhotonKernel::constant;
   double least_roughness = 0.3;
   LightGuideSettings light_guide = BsdfGuideSettings{};
+
+  PhotonTracing() { radius = 8; }  // docs/notebook/photons.md
   bool operator==(const PhotonTracing&) const = default;
 };
 
@@ -72,7 +74,6 @@ struct PhotonMapSettings : PhotonTracing {
   int caustic_paths = 0;
 
   PhotonMapSettings() {
-    radius = 8;
     alpha = 1;
     kernel = PhotonKernel::cone;
   }

@@ -111,7 +111,7 @@ TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
   EXPECT_FALSE(cells.directions(0).empty());
   EXPECT_FALSE(cells.directions(1).empty());
   // The second round is as long as the first, the third as both.
-  const TrainingSamples none({}, 2);
+  const TrainingSamples none({}, 2, pool);
   EXPECT_TRUE(cells.update(none, pool));
   cells.next_round(pool);
   EXPECT_FALSE(cells.update(none, pool));
