@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace lacuna {
 
@@ -21,6 +22,18 @@ WorkLog::WorkLog(int threads)
       spans_(static_cast<std::size_t>(threads)) {}
 
 double WorkLog::now() const { return seconds() - start_; }
+
+void WorkLog::keep_spans() {
+  keeps_ = true;
+  marked_cpu_ = cpu_now();
+}
+
+double WorkLog::cpu_now() const {
+  if (!keeps_) return 0;
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 std::uint64_t WorkLog::lost_spans() const {
   std::uint64_t lost = 0;
@@ -57,8 +70,10 @@ void WorkLog::leave(std::uint32_t to) {
 void WorkLog::mark() {
   const double time = now();
   times_[section_].serial += time - marked_;
-  keep(0, {marked_, time, section_, loop_, -1});
+  const double cpu = cpu_now();
+  keep(0, {marked_, time, cpu - marked_cpu_, section_, loop_, -1});
   marked_ = time;
+  marked_cpu_ = cpu;
 }
 
 void WorkLog::keep(int thread, const Span& span) {
@@ -91,6 +106,7 @@ void WorkLog::end_loop() {
     times.bodies += t.bodies;
   }
   marked_ = time;
+  marked_cpu_ = cpu_now();
   ++loop_;
   in_loop_ = false;
 }
@@ -99,13 +115,13 @@ void WorkLog::run(int thread, int i, const std::function<void(int)>& body) {
   struct Timed {
     WorkLog& log;
     int thread, i;
-    double begin = log.now();
+    double begin = log.now(), cpu = log.cpu_now();
     ~Timed() {
-      const double end = log.now();
+      const double used = log.cpu_now() - cpu, end = log.now();
       Thread& own = log.threads_[static_cast<std::size_t>(thread)];
       own.busy += end - begin;
       ++own.bodies;
-      log.keep(thread, {begin, end, log.section_, log.loop_, i});
+      log.keep(thread, {begin, end, used, log.section_, log.loop_, i});
     }
   };
   const Timed timed{*this, thread, i};

@@ -31,12 +31,13 @@ class WorkLog {
   /// A span of time of one thread.
   struct Span {
     double begin, end;      ///< seconds since the log was made
+    double cpu;             ///< CPU seconds of the thread
     std::uint32_t section;  ///< index in names()
     std::uint32_t loop;     ///< number of the loop, or of the loop that follows
     std::int32_t body;      ///< index of the body in its loop; -1: outside of loops
   };
   /// From now on, spans are kept for spans(): the first 2^20 of each thread.
-  void keep_spans() { keeps_ = true; }
+  void keep_spans();
   /// Of each thread, in the order of time.
   const std::vector<std::vector<Span>>& spans() const { return spans_; }
   /// Spans that were not kept because there were too many.
@@ -64,6 +65,8 @@ class WorkLog {
   };
 
   double now() const;
+  /// CPU seconds of the thread, if spans are kept: the clock is slow.
+  double cpu_now() const;
   bool is_owner() const { return std::this_thread::get_id() == owner_; }
   /// Ends the serial time since the last mark.
   void mark();
@@ -75,7 +78,7 @@ class WorkLog {
   bool in_loop_ = false;
   std::uint32_t loop_ = 0;
   std::uint32_t section_ = 0;
-  double marked_ = 0;
+  double marked_ = 0, marked_cpu_ = 0;
   std::vector<std::string> names_{"other"};
   std::vector<SectionTimes> times_{1};
   std::vector<Thread> threads_;

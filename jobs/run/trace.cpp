@@ -14,9 +14,9 @@ void write_trace(const WorkLog& log, const std::filesystem::path& file) {
     for (const WorkLog::Span& span : log.spans()[thread]) {
       text += fmt::format(
           "{}{{\"name\":\"{}\",\"ph\":\"X\",\"pid\":1,\"tid\":{},\"ts\":{:.3f},\"dur\":{:.3f},"
-          "\"args\":{{\"loop\":{},\"body\":{}}}}}",
+          "\"args\":{{\"cpu\":{:.3f},\"loop\":{},\"body\":{}}}}}",
           separator, log.names()[span.section], thread, 1e6 * span.begin,
-          1e6 * (span.end - span.begin), span.loop, span.body);
+          1e6 * (span.end - span.begin), 1e6 * span.cpu, span.loop, span.body);
       separator = ",\n";
     }
   }

@@ -90,6 +90,7 @@ TEST(WorkLog, SpansOfAThreadFollowEachOther) {
     double end = 0;
     for (const WorkLog::Span& s : spans) {
       EXPECT_LE(s.begin, s.end);
+      EXPECT_GE(s.cpu, 0);
       EXPECT_GE(s.begin, end);
       end = s.end;
       if (s.body < 0) continue;
