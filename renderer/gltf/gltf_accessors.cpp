@@ -5,50 +5,112 @@
 #include "renderer/geometry/scene_data.h"
 
 namespace lacuna::gltf {
+namespace {
+
+/// The `k`-th T from `from` on; buffers need not be aligned.
+template <class T>
+T load(const unsigned char* from, std::size_t k) {
+  T value;
+  std::memcpy(&value, from + k * sizeof(T), sizeof(T));
+  return value;
+}
+
+std::uint32_t load_index(const unsigned char* from, std::size_t k, int component) {
+  switch (component) {
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<std::uint8_t>(from, k);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(from, k);
+    default:
+      return load<std::uint32_t>(from, k);
+  }
+}
+
+const unsigned char* bytes_of(const tinygltf::Model& model, int buffer_view, std::size_t offset) {
+  const auto& view = model.bufferViews[static_cast<std::size_t>(buffer_view)];
+  return model.buffers[static_cast<std::size_t>(view.buffer)].data.data() + view.byteOffset +
+         offset;
+}
+
+}  // namespace
+
+SparseElements::SparseElements(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+                               const std::string& place) {
+  if (!accessor.sparse.isSparse) return;
+  const auto& indices = accessor.sparse.indices;
+  const auto& values = accessor.sparse.values;
+  indices_ = bytes_of(model, indices.bufferView, static_cast<std::size_t>(indices.byteOffset));
+  values_ = bytes_of(model, values.bufferView, static_cast<std::size_t>(values.byteOffset));
+  count_ = static_cast<std::size_t>(accessor.sparse.count);
+  component_ = indices.componentType;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const auto fail = [&](const std::string& allowed) {
+      throw SceneError(place + ": sparse.indices[" + std::to_string(k) + "] is " +
+                       std::to_string(index(k)) + "; allowed: " + allowed);
+    };
+    if (index(k) >= accessor.count) fail("below its count, " + std::to_string(accessor.count));
+    if (k > 0 && index(k) <= index(k - 1)) {
+      fail("above the one before, " + std::to_string(index(k - 1)));
+    }
+  }
+}
+
+std::uint32_t SparseElements::index(std::size_t k) const {
+  return load_index(indices_, k, component_);
+}
+
+std::size_t SparseElements::find(std::size_t i) const {
+  std::size_t low = 0;
+  std::size_t high = count_;
+  while (low < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    if (index(middle) < i) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low < count_ && index(low) == i ? low : none;
+}
 
 AccessorView::AccessorView(const tinygltf::Model& model, int accessor, int type,
                            std::initializer_list<int> components, const std::string& use) {
   const tinygltf::Accessor& a = model.accessors[static_cast<std::size_t>(accessor)];
-  const auto fail = [&](const std::string& what) {
-    throw SceneError("accessors[" + std::to_string(accessor) + "], used as " + use + ": " + what);
-  };
-  if (a.sparse.isSparse) fail("sparse accessors are not supported");
-  if (a.bufferView < 0) fail("it has no bufferView");
+  const std::string place = "accessors[" + std::to_string(accessor) + "], used as " + use;
   const bool known =
       std::find(components.begin(), components.end(), a.componentType) != components.end();
   const bool integers = a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT;
   const bool scaled = type == TINYGLTF_TYPE_SCALAR || !integers || a.normalized;
   if (a.type != type || !known || !scaled) {
-    fail("its type, componentType " + std::to_string(a.componentType) +
-         " or normalized is not one that glTF allows for this use");
+    throw SceneError(place + ": its type, componentType " + std::to_string(a.componentType) +
+                     " or normalized is not one that glTF allows for this use");
   }
-  const auto& view = model.bufferViews[static_cast<std::size_t>(a.bufferView)];
-  data_ = model.buffers[static_cast<std::size_t>(view.buffer)].data.data() + view.byteOffset +
-          a.byteOffset;
-  stride_ = static_cast<std::size_t>(a.ByteStride(view));
+  if (a.bufferView >= 0) {
+    const auto& view = model.bufferViews[static_cast<std::size_t>(a.bufferView)];
+    data_ = bytes_of(model, a.bufferView, a.byteOffset);
+    stride_ = static_cast<std::size_t>(a.ByteStride(view));
+  }
   count_ = a.count;
   component_ = a.componentType;
+  element_bytes_ = static_cast<std::size_t>(
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(a.componentType)) *
+      tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)));
+  sparse_ = SparseElements(model, a, place);
 }
 
 std::uint32_t AccessorView::index(std::size_t i) const {
-  switch (component_) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<std::uint8_t>(i, 0);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<std::uint16_t>(i, 0);
-    default:
-      return load<std::uint32_t>(i, 0);
-  }
+  const unsigned char* from = element(i);
+  return from == nullptr ? 0 : load_index(from, 0, component_);
 }
 
-float AccessorView::component(std::size_t i, std::size_t k) const {
+float AccessorView::component(const unsigned char* from, std::size_t k) const {
   switch (component_) {
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return static_cast<float>(load<std::uint8_t>(i, k)) / 255.0F;
+      return static_cast<float>(load<std::uint8_t>(from, k)) / 255.0F;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return static_cast<float>(load<std::uint16_t>(i, k)) / 65535.0F;
+      return static_cast<float>(load<std::uint16_t>(from, k)) / 65535.0F;
     default:
-      return load<float>(i, k);
+      return load<float>(from, k);
   }
 }
 

@@ -122,6 +122,37 @@ std::uint64_t element_bytes(const GltfObject& accessor) {
   return bytes->second * count->second;
 }
 
+/// Accessors without a bufferView claim a size that no bytes stand for.
+constexpr std::uint64_t max_without_data = std::uint64_t{1} << 27;
+
+/// `count` tightly packed elements of a bufferView.
+void check_packed(const GltfObject& part, const std::vector<GltfObject>& views, std::uint64_t count,
+                  std::uint64_t element) {
+  const auto view = part.index("bufferView", views.size(), "bufferViews");
+  if (!view) part.fail("bufferView is missing");
+  const std::uint64_t offset = part.integer("byteOffset", 0, 0, max_bytes);
+  const std::uint64_t held = views[*view].integer("byteLength", 1, max_bytes);
+  if (const std::uint64_t end = offset + count * element; end > held) {
+    part.fail(std::to_string(count) + " elements end at byte " + std::to_string(end) +
+              " of bufferViews[" + std::to_string(*view) + "], which has " + std::to_string(held));
+  }
+}
+
+/// That its indices are below `elements`, and rising, is checked where they are read.
+void check_sparse(const GltfObject& sparse, const std::vector<GltfObject>& views,
+                  std::uint64_t elements, std::uint64_t element) {
+  const std::uint64_t count = sparse.integer("count", 1, elements);
+  const auto indices = sparse.object("indices");
+  const auto values = sparse.object("values");
+  if (!indices || !values) sparse.fail("indices or values is missing");
+  const std::uint64_t component = indices->integer("componentType", 5121, 5125);
+  if (component != 5121 && component != 5123 && component != 5125) {
+    indices->refuse("componentType", "5121, 5123 or 5125");
+  }
+  check_packed(*indices, views, count, component == 5121 ? 1 : component == 5123 ? 2 : 4);
+  check_packed(*values, views, count, element);
+}
+
 void check_accessors(const GltfObject& root, const Sizes& sizes) {
   const auto views = root.objects("bufferViews");
   for (const GltfObject& accessor : root.objects("accessors")) {
@@ -129,9 +160,17 @@ void check_accessors(const GltfObject& root, const Sizes& sizes) {
     const std::uint64_t count = accessor.integer("count", 1, max_bytes);
     const std::uint64_t offset = accessor.integer("byteOffset", 0, 0, max_bytes);
     accessor.boolean("normalized", false);
-    accessor.object("sparse");
+    if (const auto sparse = accessor.object("sparse")) {
+      check_sparse(*sparse, views, count, element);
+    }
     const auto view = accessor.index("bufferView", sizes.buffer_views, "bufferViews");
-    if (!view) continue;
+    if (!view) {
+      if (count > max_without_data) {
+        accessor.refuse("count",
+                        "at most " + std::to_string(max_without_data) + " without a bufferView");
+      }
+      continue;
+    }
     const std::uint64_t stride = views[*view].integer("byteStride", element, 4, 252);
     if (stride < element) {
       accessor.fail("elements of " + std::to_string(element) + " bytes do not fit the byteStride " +
