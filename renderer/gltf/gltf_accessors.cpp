@@ -26,6 +26,30 @@ std::uint32_t load_index(const unsigned char* from, std::size_t k, int component
   }
 }
 
+bool is_unsigned(int component) {
+  return component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+         component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+}
+
+bool allows(Components use, int component, bool normalized) {
+  const bool small_integer = is_unsigned(component) || component == TINYGLTF_COMPONENT_TYPE_BYTE ||
+                             component == TINYGLTF_COMPONENT_TYPE_SHORT;
+  const bool is_float = component == TINYGLTF_COMPONENT_TYPE_FLOAT;
+  switch (use) {
+    case Components::floats:
+      return is_float;
+    case Components::quantized:
+      return is_float || small_integer;
+    case Components::normalized:
+      return is_float || (small_integer && normalized);
+    case Components::joints:
+      return is_unsigned(component) && !normalized;
+    case Components::indices:
+      return is_unsigned(component) || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  }
+  return false;
+}
+
 const unsigned char* bytes_of(const tinygltf::Model& model, int buffer_view, std::size_t offset) {
   const auto& view = model.bufferViews[static_cast<std::size_t>(buffer_view)];
   return model.buffers[static_cast<std::size_t>(view.buffer)].data.data() + view.byteOffset +
@@ -74,14 +98,10 @@ std::size_t SparseElements::find(std::size_t i) const {
 }
 
 AccessorView::AccessorView(const tinygltf::Model& model, int accessor, int type,
-                           std::initializer_list<int> components, const std::string& use) {
+                           Components components, const std::string& use) {
   const tinygltf::Accessor& a = model.accessors[static_cast<std::size_t>(accessor)];
   const std::string place = "accessors[" + std::to_string(accessor) + "], used as " + use;
-  const bool known =
-      std::find(components.begin(), components.end(), a.componentType) != components.end();
-  const bool integers = a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT;
-  const bool scaled = type == TINYGLTF_TYPE_SCALAR || !integers || a.normalized;
-  if (a.type != type || !known || !scaled) {
+  if (a.type != type || !allows(components, a.componentType, a.normalized)) {
     throw SceneError(place + ": its type, componentType " + std::to_string(a.componentType) +
                      " or normalized is not one that glTF allows for this use");
   }
@@ -92,6 +112,7 @@ AccessorView::AccessorView(const tinygltf::Model& model, int accessor, int type,
   }
   count_ = a.count;
   component_ = a.componentType;
+  normalized_ = a.normalized;
   element_bytes_ = static_cast<std::size_t>(
       tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(a.componentType)) *
       tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)));
@@ -104,11 +125,19 @@ std::uint32_t AccessorView::index(std::size_t i) const {
 }
 
 float AccessorView::component(const unsigned char* from, std::size_t k) const {
+  // glTF 2.0, section 3.6.2.2: the lowest signed integer stands for -1 like the next one.
+  const auto scaled = [this](float value, float most) {
+    return normalized_ ? std::max(value / most, -1.0F) : value;
+  };
   switch (component_) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return scaled(load<std::int8_t>(from, k), 127.0F);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return static_cast<float>(load<std::uint8_t>(from, k)) / 255.0F;
+      return scaled(load<std::uint8_t>(from, k), 255.0F);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return scaled(load<std::int16_t>(from, k), 32767.0F);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return static_cast<float>(load<std::uint16_t>(from, k)) / 65535.0F;
+      return scaled(load<std::uint16_t>(from, k), 65535.0F);
     default:
       return load<float>(from, k);
   }

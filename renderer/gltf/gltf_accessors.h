@@ -9,6 +9,15 @@
 
 namespace lacuna::gltf {
 
+/// What the components of an accessor may be stored as, by its use.
+enum class Components {
+  floats,      ///< floats only
+  quantized,   ///< floats or integers of 8 or 16 bits, as KHR_mesh_quantization allows
+  normalized,  ///< floats or such integers that are normalised
+  joints,      ///< unsigned integers of 8 or 16 bits, not normalised
+  indices,     ///< unsigned integers of 8, 16 or 32 bits
+};
+
 /// The elements of an accessor that `sparse` replaces.
 class SparseElements {
  public:
@@ -38,13 +47,13 @@ class SparseElements {
 /// their buffers. Without a bufferView, those that are not sparse are 0.
 class AccessorView {
  public:
-  /// `type`: TINYGLTF_TYPE_*; `components`: the allowed component types; `use`: names the accessor
-  /// in errors. Throws SceneError if the accessor has another type.
-  AccessorView(const tinygltf::Model& model, int accessor, int type,
-               std::initializer_list<int> components, const std::string& use);
+  /// `type`: TINYGLTF_TYPE_*; `use`: names the accessor in errors. Throws SceneError if the
+  /// accessor has another type or other components.
+  AccessorView(const tinygltf::Model& model, int accessor, int type, Components components,
+               const std::string& use);
 
   std::size_t size() const { return count_; }
-  /// Element `i` as floats; normalised unsigned integers become [0, 1].
+  /// Element `i` as floats; normalised integers become [0, 1] or [-1, 1].
   template <std::size_t N>
   std::array<float, N> floats(std::size_t i) const {
     std::array<float, N> out{};
@@ -72,6 +81,7 @@ class AccessorView {
   std::size_t count_ = 0;
   std::size_t element_bytes_ = 0;
   int component_ = 0;
+  bool normalized_ = false;
   SparseElements sparse_;
 };
 

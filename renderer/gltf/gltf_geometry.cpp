@@ -57,8 +57,7 @@ Bounds bounds_of(const AccessorView& positions, const std::vector<std::uint32_t>
 /// Normals go with the inverse transpose, which is the matrix of cofactors over the determinant.
 std::vector<V3f> world_normals(const Source& source, const std::vector<std::uint32_t>& kept) {
   std::vector<V3f> out(kept.size());
-  const AccessorView local =
-      source.view("NORMAL", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+  const AccessorView local = source.view("NORMAL", TINYGLTF_TYPE_VEC3, Components::normalized);
   const M44d& m = source.node.to_world;
   const double sign = source.node.mirrored ? -1 : 1;
   const V3d cofactors[3] = {row(m, 1).cross(row(m, 2)) * sign, row(m, 2).cross(row(m, 0)) * sign,
@@ -109,10 +108,7 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
                     "\" needs: its textures are read at (0, 0)");
       continue;
     }
-    const AccessorView view =
-        source.view(name, TINYGLTF_TYPE_VEC2,
-                    {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
-                     TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT});
+    const AccessorView view = source.view(name, TINYGLTF_TYPE_VEC2, Components::quantized);
     mesh.uvs[set].reserve(kept.size());
     for (const std::uint32_t v : kept) {
       const auto uv = view.floats<2>(v);
@@ -138,8 +134,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   mesh.material = source.primitive().material >= 0
                       ? static_cast<std::uint32_t>(source.primitive().material)
                       : static_cast<std::uint32_t>(scene.materials.size() - 1);
-  const AccessorView local =
-      source.view("POSITION", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+  const AccessorView local = source.view("POSITION", TINYGLTF_TYPE_VEC3, Components::quantized);
   mesh.triangles = assemble_triangles(source.model, source.primitive(), local.size(),
                                       source.node.mirrored, source.place());
   if (const auto spare = spare_corners(source.model, source.primitive()); spare > 0) {

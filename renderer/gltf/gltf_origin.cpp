@@ -13,8 +13,7 @@ namespace {
 
 /// Of the finite vertices that the triangles of a primitive use, in its own coordinates.
 Bounds local_bounds(const Source& source) {
-  const AccessorView positions =
-      source.view("POSITION", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+  const AccessorView positions = source.view("POSITION", TINYGLTF_TYPE_VEC3, Components::quantized);
   Bounds box;
   const auto triangles =
       assemble_triangles(source.model, source.primitive(), positions.size(), false, source.place());

@@ -38,8 +38,7 @@ struct Source {
     return it == primitive().attributes.end() ? -1 : it->second;
   }
   /// The elements of an attribute, as many as POSITION has.
-  AccessorView view(const std::string& name, int type,
-                    std::initializer_list<int> components) const {
+  AccessorView view(const std::string& name, int type, Components components) const {
     const std::string use = name + " of " + place();
     AccessorView out(model, attribute(name), type, components, use);
     const auto vertices =

@@ -46,11 +46,7 @@ std::vector<Triangle> assemble_triangles(const tinygltf::Model& model,
                                          bool mirrored, const std::string& place) {
   std::optional<AccessorView> indices;
   if (primitive.indices >= 0) {
-    indices.emplace(model, primitive.indices, TINYGLTF_TYPE_SCALAR,
-                    std::initializer_list<int>{TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
-                                               TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-                                               TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
-                    "indices");
+    indices.emplace(model, primitive.indices, TINYGLTF_TYPE_SCALAR, Components::indices, "indices");
   }
   std::vector<Triangle> triangles(count_triangles(model, primitive));
   for (std::size_t t = 0; t < triangles.size(); ++t) {

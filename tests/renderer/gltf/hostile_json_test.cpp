@@ -100,7 +100,7 @@ std::vector<HostileCase> structure_cases() {
       set("ZerosWithoutEnd", "/accessors/0",
           {{"componentType", 5126}, {"count", 4000000000}, {"type", "VEC3"}},
           {"accessors[0]: count: found number 4000000000; allowed: at most 134217728 without"}),
-      set("PositionsAsShorts", "/accessors/0/componentType", 5123,
+      set("PositionsAsIntegers", "/accessors/0/componentType", 5125,
           {"accessors[0], used as POSITION of meshes[0].primitives[0]"}),
       set("IndicesAsFloats", "/accessors/1/componentType", 5126, {"accessors[1], used as indices"}),
       set("NoPrimitives", "/meshes/0/primitives", Json::array(), {"meshes[0]: primitives"}),
