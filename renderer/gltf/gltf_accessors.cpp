@@ -9,7 +9,7 @@ namespace {
 
 /// The `k`-th T from `from` on; buffers need not be aligned.
 template <class T>
-T load(const unsigned char* from, std::size_t k) {
+T component_at(const unsigned char* from, std::size_t k) {
   T value;
   std::memcpy(&value, from + k * sizeof(T), sizeof(T));
   return value;
@@ -17,24 +17,21 @@ T load(const unsigned char* from, std::size_t k) {
 
 std::uint32_t load_index(const unsigned char* from, std::size_t k, int component) {
   switch (component) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<std::uint8_t>(from, k);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<std::uint16_t>(from, k);
+    case component_u8:
+      return component_at<std::uint8_t>(from, k);
+    case component_u16:
+      return component_at<std::uint16_t>(from, k);
     default:
-      return load<std::uint32_t>(from, k);
+      return component_at<std::uint32_t>(from, k);
   }
 }
 
-bool is_unsigned(int component) {
-  return component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-         component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
-}
+bool is_unsigned(int component) { return component == component_u8 || component == component_u16; }
 
 bool allows(Components use, int component, bool normalized) {
-  const bool small_integer = is_unsigned(component) || component == TINYGLTF_COMPONENT_TYPE_BYTE ||
-                             component == TINYGLTF_COMPONENT_TYPE_SHORT;
-  const bool is_float = component == TINYGLTF_COMPONENT_TYPE_FLOAT;
+  const bool small_integer =
+      is_unsigned(component) || component == component_s8 || component == component_s16;
+  const bool is_float = component == component_float;
   switch (use) {
     case Components::floats:
       return is_float;
@@ -45,28 +42,21 @@ bool allows(Components use, int component, bool normalized) {
     case Components::joints:
       return is_unsigned(component) && !normalized;
     case Components::indices:
-      return is_unsigned(component) || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+      return is_unsigned(component) || component == component_u32;
   }
   return false;
 }
 
-const unsigned char* bytes_of(const tinygltf::Model& model, int buffer_view, std::size_t offset) {
-  const auto& view = model.bufferViews[static_cast<std::size_t>(buffer_view)];
-  return model.buffers[static_cast<std::size_t>(view.buffer)].data.data() + view.byteOffset +
-         offset;
-}
-
 }  // namespace
 
-SparseElements::SparseElements(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+SparseElements::SparseElements(const file::Model& model, const file::Accessor& accessor,
                                const std::string& place) {
-  if (!accessor.sparse.isSparse) return;
-  const auto& indices = accessor.sparse.indices;
-  const auto& values = accessor.sparse.values;
-  indices_ = bytes_of(model, indices.bufferView, static_cast<std::size_t>(indices.byteOffset));
-  values_ = bytes_of(model, values.bufferView, static_cast<std::size_t>(values.byteOffset));
-  count_ = static_cast<std::size_t>(accessor.sparse.count);
-  component_ = indices.componentType;
+  const file::Sparse& sparse = accessor.sparse;
+  if (sparse.count == 0) return;
+  indices_ = model.bytes_of(sparse.indices_view, sparse.indices_offset);
+  values_ = model.bytes_of(sparse.values_view, sparse.values_offset);
+  count_ = sparse.count;
+  component_ = sparse.indices_component;
   for (std::size_t k = 0; k < count_; ++k) {
     const auto fail = [&](const std::string& allowed) {
       throw SceneError(place + ": sparse.indices[" + std::to_string(k) + "] is " +
@@ -97,31 +87,29 @@ std::size_t SparseElements::find(std::size_t i) const {
   return low < count_ && index(low) == i ? low : none;
 }
 
-AccessorView::AccessorView(const tinygltf::Model& model, int accessor, int type,
+AccessorView::AccessorView(const file::Model& model, int accessor, ElementType type,
                            Components components, const std::string& use) {
-  const tinygltf::Accessor& a = model.accessors[static_cast<std::size_t>(accessor)];
+  const file::Accessor& a = model.accessors[static_cast<std::size_t>(accessor)];
   const std::string place = "accessors[" + std::to_string(accessor) + "], used as " + use;
-  if (a.type != type || !allows(components, a.componentType, a.normalized)) {
-    throw SceneError(place + ": its type, componentType " + std::to_string(a.componentType) +
+  if (a.type != type || !allows(components, a.component, a.normalized)) {
+    throw SceneError(place + ": its type, componentType " + std::to_string(a.component) +
                      " or normalized is not one that glTF allows for this use");
   }
-  if (a.bufferView >= 0) {
-    const auto& view = model.bufferViews[static_cast<std::size_t>(a.bufferView)];
-    data_ = bytes_of(model, a.bufferView, a.byteOffset);
-    stride_ = static_cast<std::size_t>(a.ByteStride(view));
-  }
   count_ = a.count;
-  component_ = a.componentType;
+  component_ = a.component;
   normalized_ = a.normalized;
-  element_bytes_ = static_cast<std::size_t>(
-      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(a.componentType)) *
-      tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)));
+  element_bytes_ = component_bytes(a.component) * component_count(a.type);
+  if (a.view >= 0) {
+    const auto view = static_cast<std::size_t>(a.view);
+    data_ = model.bytes_of(view, a.offset);
+    stride_ = model.views[view].stride > 0 ? model.views[view].stride : element_bytes_;
+  }
   sparse_ = SparseElements(model, a, place);
 }
 
-std::uint32_t AccessorView::index(std::size_t i) const {
+std::uint32_t AccessorView::integer(std::size_t i, std::size_t k) const {
   const unsigned char* from = element(i);
-  return from == nullptr ? 0 : load_index(from, 0, component_);
+  return from == nullptr ? 0 : load_index(from, k, component_);
 }
 
 float AccessorView::component(const unsigned char* from, std::size_t k) const {
@@ -130,16 +118,16 @@ float AccessorView::component(const unsigned char* from, std::size_t k) const {
     return normalized_ ? std::max(value / most, -1.0F) : value;
   };
   switch (component_) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return scaled(load<std::int8_t>(from, k), 127.0F);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return scaled(load<std::uint8_t>(from, k), 255.0F);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return scaled(load<std::int16_t>(from, k), 32767.0F);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return scaled(load<std::uint16_t>(from, k), 65535.0F);
+    case component_s8:
+      return scaled(component_at<std::int8_t>(from, k), 127.0F);
+    case component_u8:
+      return scaled(component_at<std::uint8_t>(from, k), 255.0F);
+    case component_s16:
+      return scaled(component_at<std::int16_t>(from, k), 32767.0F);
+    case component_u16:
+      return scaled(component_at<std::uint16_t>(from, k), 65535.0F);
     default:
-      return load<float>(from, k);
+      return component_at<float>(from, k);
   }
 }
 

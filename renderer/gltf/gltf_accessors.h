@@ -26,7 +26,7 @@ class SparseElements {
   SparseElements() = default;
   /// `place` names the accessor in errors. Throws SceneError unless the indices are below its count
   /// and each is above the one before.
-  SparseElements(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+  SparseElements(const file::Model& model, const file::Accessor& accessor,
                  const std::string& place);
 
   bool empty() const { return count_ == 0; }
@@ -47,9 +47,9 @@ class SparseElements {
 /// their buffers. Without a bufferView, those that are not sparse are 0.
 class AccessorView {
  public:
-  /// `type`: TINYGLTF_TYPE_*; `use`: names the accessor in errors. Throws SceneError if the
+  /// `use`: names the accessor in errors. Throws SceneError if the
   /// accessor has another type or other components.
-  AccessorView(const tinygltf::Model& model, int accessor, int type, Components components,
+  AccessorView(const file::Model& model, int accessor, ElementType type, Components components,
                const std::string& use);
 
   std::size_t size() const { return count_; }
@@ -62,8 +62,9 @@ class AccessorView {
     for (std::size_t k = 0; k < N; ++k) out[k] = component(from, k);
     return out;
   }
-  /// Element `i` of a SCALAR accessor of unsigned integers.
-  std::uint32_t index(std::size_t i) const;
+  /// Component `k` of element `i` of an accessor of indices or joints.
+  std::uint32_t integer(std::size_t i, std::size_t k) const;
+  std::uint32_t index(std::size_t i) const { return integer(i, 0); }
 
  private:
   /// Null where the element is 0 for lack of a bufferView.

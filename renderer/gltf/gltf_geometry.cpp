@@ -57,7 +57,7 @@ Bounds bounds_of(const AccessorView& positions, const std::vector<std::uint32_t>
 /// Normals go with the inverse transpose, which is the matrix of cofactors over the determinant.
 std::vector<V3f> world_normals(const Source& source, const std::vector<std::uint32_t>& kept) {
   std::vector<V3f> out(kept.size());
-  const AccessorView local = source.view("NORMAL", TINYGLTF_TYPE_VEC3, Components::normalized);
+  const AccessorView local = source.view("NORMAL", ElementType::vec3, Components::normalized);
   const M44d& m = source.node.to_world;
   const double sign = source.node.mirrored ? -1 : 1;
   const V3d cofactors[3] = {row(m, 1).cross(row(m, 2)) * sign, row(m, 2).cross(row(m, 0)) * sign,
@@ -108,7 +108,7 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
                     "\" needs: its textures are read at (0, 0)");
       continue;
     }
-    const AccessorView view = source.view(name, TINYGLTF_TYPE_VEC2, Components::quantized);
+    const AccessorView view = source.view(name, ElementType::vec2, Components::quantized);
     mesh.uvs[set].reserve(kept.size());
     for (const std::uint32_t v : kept) {
       const auto uv = view.floats<2>(v);
@@ -117,7 +117,7 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
   }
 }
 
-void warn_of_unread_attributes(const tinygltf::Primitive& primitive, Warnings& warnings) {
+void warn_of_unread_attributes(const file::Primitive& primitive, Warnings& warnings) {
   if (!primitive.targets.empty()) {
     warnings.once("morph targets are left out: meshes keep their base shape");
   }
@@ -134,7 +134,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   mesh.material = source.primitive().material >= 0
                       ? static_cast<std::uint32_t>(source.primitive().material)
                       : static_cast<std::uint32_t>(scene.materials.size() - 1);
-  const AccessorView local = source.view("POSITION", TINYGLTF_TYPE_VEC3, Components::quantized);
+  const AccessorView local = source.view("POSITION", ElementType::vec3, Components::quantized);
   mesh.triangles = assemble_triangles(source.model, source.primitive(), local.size(),
                                       source.node.mirrored, source.place());
   if (const auto spare = spare_corners(source.model, source.primitive()); spare > 0) {
@@ -166,7 +166,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
 }
 
 /// A file of a few kilobytes can place one mesh a million times: count before anything is built.
-void check_total(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes) {
   std::size_t total = 0;
   for (const PlacedNode& node : nodes) {
     const auto mesh = mesh_of(model, node);
@@ -181,13 +181,13 @@ void check_total(const tinygltf::Model& model, const std::vector<PlacedNode>& no
   }
 }
 
-void add_node(const tinygltf::Model& model, const PlacedNode& node, SceneData& scene,
-              Counts& counts, Warnings& warnings) {
+void add_node(const file::Model& model, const PlacedNode& node, SceneData& scene, Counts& counts,
+              Warnings& warnings) {
   const auto mesh_index = mesh_of(model, node);
   if (!mesh_index) return;
-  const tinygltf::Mesh& mesh = model.meshes[*mesh_index];
+  const file::Mesh& mesh = model.meshes[*mesh_index];
   for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
-    const tinygltf::Primitive& primitive = mesh.primitives[k];
+    const file::Primitive& primitive = mesh.primitives[k];
     if (!is_drawn(primitive)) {
       ++(is_triangle_mode(primitive.mode) ? counts.without_position : counts.points_and_lines);
       continue;
@@ -212,8 +212,8 @@ std::string left_out(const Counts& counts) {
 
 }  // namespace
 
-void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
-                  SceneData& scene, Warnings& warnings) {
+void build_meshes(const file::Model& model, const std::vector<PlacedNode>& nodes, SceneData& scene,
+                  Warnings& warnings) {
   check_total(model, nodes);
   scene.origin = scene_origin(model, nodes);
   Counts counts;

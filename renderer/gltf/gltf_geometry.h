@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_model.h"
 #include "renderer/gltf/gltf_nodes.h"
 #include "renderer/gltf/gltf_warnings.h"
@@ -11,7 +12,7 @@ namespace lacuna::gltf {
 /// Fills `scene.origin`, `meshes` (one for each primitive of each placed node, in scene
 /// coordinates), `dropped_triangles` and `geometry_hash`. Reads `scene.materials`. Throws
 /// SceneError.
-void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
-                  SceneData& scene, Warnings& warnings);
+void build_meshes(const file::Model& model, const std::vector<PlacedNode>& nodes, SceneData& scene,
+                  Warnings& warnings);
 
 }  // namespace lacuna::gltf

@@ -12,6 +12,9 @@ struct Framing {
   bool binary = false;  ///< a GLB
   std::span<const std::uint8_t> json;
   std::uint64_t bin_bytes = 0;  ///< length of the BIN chunk; 0: none
+
+  /// The BIN chunk, behind the JSON and a header of 8 bytes.
+  std::span<const std::uint8_t> bin() const { return {json.data() + json.size() + 8, bin_bytes}; }
 };
 
 /// Splits a file into its chunks. A file with the magic bytes of GLB is a GLB, any other is JSON.
@@ -19,13 +22,13 @@ struct Framing {
 /// a chunk has the wrong type.
 Framing check_framing(std::span<const std::uint8_t> file);
 
-/// Parses the JSON, at most 64 levels deep (tinygltf recurses). Throws SceneError.
+/// Parses the JSON, at most 64 levels deep. Throws SceneError.
 Json parse_json(std::span<const std::uint8_t> text);
 
-/// Validates what tinygltf does not: types, ranges and indices of buffers, bufferViews, accessors,
-/// images, textures, samplers, meshes, nodes and scenes; that each bufferView lies inside its
-/// buffer and each accessor inside its bufferView; that required extensions are supported.
-/// Materials, cameras and lights are validated where they are read. Throws SceneError.
+/// Validates what read_model() relies on: types, ranges and indices of buffers, bufferViews,
+/// accessors, images, textures, samplers, meshes, nodes and scenes; that each bufferView lies
+/// inside its buffer and each accessor inside its bufferView; that required extensions are
+/// supported. Materials, cameras and lights are validated where they are read. Throws SceneError.
 void check_structure(const GltfObject& root, const Framing& framing);
 
 /// The names that may stand in extensionsRequired.

@@ -39,11 +39,11 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
     scene.cameras = read_cameras(root, nodes, scene.origin, warnings);
     scene.lights = read_lights(root, nodes, scene.origin, warnings);
   };
-  place_cameras_and_lights();  // their faults are told before the library meets them
+  place_cameras_and_lights();  // their faults are told before buffers are read
 
   Hasher content;
   content.add(std::span<const std::uint8_t>(bytes));
-  const tinygltf::Model model = parse_model(bytes, framing, root, folder, content);
+  const file::Model model = read_model(framing, root, folder, content);
   build_meshes(model, nodes, scene, warnings);
   if (scene.origin != V3d(0.0)) place_cameras_and_lights();
   warn_of_far_cameras(scene, warnings);

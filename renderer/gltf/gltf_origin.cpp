@@ -13,7 +13,7 @@ namespace {
 
 /// Of the finite vertices that the triangles of a primitive use, in its own coordinates.
 Bounds local_bounds(const Source& source) {
-  const AccessorView positions = source.view("POSITION", TINYGLTF_TYPE_VEC3, Components::quantized);
+  const AccessorView positions = source.view("POSITION", ElementType::vec3, Components::quantized);
   Bounds box;
   const auto triangles =
       assemble_triangles(source.model, source.primitive(), positions.size(), false, source.place());
@@ -41,7 +41,7 @@ void add_corners(const Bounds& local, const M44d& to_world, Bounds& box) {
   }
 }
 
-Bounds scene_bounds(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+Bounds scene_bounds(const file::Model& model, const std::vector<PlacedNode>& nodes) {
   std::vector<std::vector<std::optional<Bounds>>> local(model.meshes.size());
   Bounds box;
   for (const PlacedNode& node : nodes) {
@@ -65,7 +65,7 @@ constexpr double too_far = 0x1p14;
 
 }  // namespace
 
-V3d scene_origin(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+V3d scene_origin(const file::Model& model, const std::vector<PlacedNode>& nodes) {
   constexpr double far = 32;
   const Bounds box = scene_bounds(model, nodes);
   const double side = longest(box.size());

@@ -16,7 +16,7 @@ namespace lacuna::gltf {
 /// multiple of a power of two between 1/2 and 1 times that side, so that the subtraction itself
 /// rounds nothing. The box bounds the transformed boxes of all placed primitives, over the vertices
 /// that triangles use.
-V3d scene_origin(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes);
+V3d scene_origin(const file::Model& model, const std::vector<PlacedNode>& nodes);
 
 /// Warns of meshes that are too small for the size of their coordinates: those for which
 /// is_far_for_its_size() holds in the scene, and `coarse` meshes for which it holds in the file,
