@@ -7,6 +7,7 @@
 #include "renderer/gltf/gltf_materials.h"
 #include "renderer/gltf/gltf_nodes.h"
 #include "renderer/gltf/gltf_origin.h"
+#include "renderer/gltf/gltf_skins.h"
 
 namespace lacuna {
 namespace gltf {
@@ -34,7 +35,7 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
   SceneData scene;
   TextureTable textures(root, warnings);
   scene.materials = read_materials(root, textures, warnings);
-  const auto nodes = place_nodes(root, warnings);
+  const auto nodes = place_nodes(root, {}, warnings);
   const auto place_cameras_and_lights = [&] {
     scene.cameras = read_cameras(root, nodes, scene.origin, warnings);
     scene.lights = read_lights(root, nodes, scene.origin, warnings);
@@ -44,7 +45,8 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
   Hasher content;
   content.add(std::span<const std::uint8_t>(bytes));
   const file::Model model = read_model(framing, root, folder, content);
-  build_meshes(model, nodes, scene, warnings);
+  const Skins skins = pose_skins(root, model, nodes, node_transforms(root, {}));
+  build_meshes(model, nodes, skins, scene, warnings);
   if (scene.origin != V3d(0.0)) place_cameras_and_lights();
   warn_of_far_cameras(scene, warnings);
   scene.textures = textures.build(model, folder, content);

@@ -7,6 +7,7 @@
 #include "renderer/gltf/gltf_accessors.h"
 #include "renderer/gltf/gltf_model.h"
 #include "renderer/gltf/gltf_nodes.h"
+#include "renderer/gltf/gltf_pose.h"
 #include "renderer/gltf/gltf_triangles.h"
 
 namespace lacuna::gltf {
@@ -15,9 +16,10 @@ inline bool is_drawn(const file::Primitive& primitive) {
   return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
 }
 
-/// The index of a node's mesh; none if it has no mesh, or its scale leaves nothing of it.
+/// The index of a node's mesh; none if it has no mesh, or its scale leaves nothing of it. A skin
+/// places a mesh by its joints alone.
 inline std::optional<std::size_t> mesh_of(const file::Model& model, const PlacedNode& node) {
-  if (node.rank < 2) return std::nullopt;
+  if (node.rank < 2 && !node.skin) return std::nullopt;
   return node.place.index("mesh", model.meshes.size(), "meshes");
 }
 
@@ -26,6 +28,7 @@ struct Source {
   const file::Model& model;
   std::size_t mesh, index;
   const PlacedNode& node;
+  const Skins& skins;
 
   const file::Primitive& primitive() const { return model.meshes[mesh].primitives[index]; }
   /// Names the instance in errors.
@@ -40,8 +43,12 @@ struct Source {
   }
   /// The elements of an attribute, as many as POSITION has.
   AccessorView view(const std::string& name, ElementType type, Components components) const {
+    return view_of(attribute(name), name, type, components);
+  }
+  AccessorView view_of(int accessor, const std::string& name, ElementType type,
+                       Components components) const {
     const std::string use = name + " of " + place();
-    AccessorView out(model, attribute(name), type, components, use);
+    AccessorView out(model, accessor, type, components, use);
     const auto vertices =
         model.accessors[static_cast<std::size_t>(primitive().attributes.at("POSITION"))].count;
     if (out.size() != vertices) {
@@ -50,6 +57,12 @@ struct Source {
     }
     return out;
   }
+  /// Whether joints place the vertices, and not the node.
+  bool skinned() const {
+    return node.skin && attribute("JOINTS_0") >= 0 && attribute("WEIGHTS_0") >= 0;
+  }
+  /// Whether nothing is left of it under a node of scale 0.
+  bool hidden() const { return node.rank < 2 && !skinned(); }
 };
 
 }  // namespace lacuna::gltf

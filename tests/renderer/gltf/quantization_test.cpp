@@ -11,9 +11,6 @@ namespace {
 using test::GlbBuilder;
 using test::Json;
 
-/// Component types of glTF.
-constexpr int s8 = 5120, u8 = 5121, s16 = 5122, u16 = 5123;
-
 /// Adds four integers for each vertex, of which the attribute has `per_vertex`: attributes have a
 /// byteStride that is a multiple of 4.
 template <class T>
@@ -37,10 +34,10 @@ Mesh mesh_with(const std::string& attribute, const std::vector<std::array<T, 4>>
   b.json["extensionsUsed"] = b.json["extensionsRequired"] = {"KHR_mesh_quantization"};
   const auto texture = b.add_texture(test::encode8(1, 1, 3, {255, 0, 0}));
   b.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
-  Json& primitive = b.json["meshes"][0]["primitives"][0];
-  primitive["material"] = 0;
-  if (attribute == "TEXCOORD_0") primitive["attributes"]["TEXCOORD_0"] = 0;
-  primitive["attributes"][attribute] = add_quantized(b, values, component, per_vertex, normalized);
+  Json& quantized = b.json["meshes"][0]["primitives"][0];
+  quantized["material"] = 0;
+  if (attribute == "TEXCOORD_0") quantized["attributes"]["TEXCOORD_0"] = 0;
+  quantized["attributes"][attribute] = add_quantized(b, values, component, per_vertex, normalized);
   b.json["nodes"][0].update(node);
   return load(b).meshes.at(0);
 }
@@ -49,17 +46,19 @@ TEST(Quantization, PlainIntegersArePositionsAsTheyAre) {
   const std::vector<V3f> wanted{{-128, 0, 5}, {127, 0, 5}, {0, 100, 5}};
   using Bytes4 = std::vector<std::array<std::int8_t, 4>>;
   using Shorts4 = std::vector<std::array<std::int16_t, 4>>;
-  EXPECT_EQ(
-      mesh_with("POSITION", Bytes4{{-128, 0, 5}, {127, 0, 5}, {0, 100, 5}}, s8, 3, false).positions,
-      wanted);
-  EXPECT_EQ(mesh_with("POSITION", Shorts4{{-128, 0, 5}, {127, 0, 5}, {0, 100, 5}}, s16, 3, false)
+  EXPECT_EQ(mesh_with("POSITION", Bytes4{{-128, 0, 5}, {127, 0, 5}, {0, 100, 5}},
+                      test::component_s8, 3, false)
+                .positions,
+            wanted);
+  EXPECT_EQ(mesh_with("POSITION", Shorts4{{-128, 0, 5}, {127, 0, 5}, {0, 100, 5}},
+                      test::component_s16, 3, false)
                 .positions,
             wanted);
   const std::vector<V3f> large{{0, 0, 9}, {65535, 0, 9}, {0, 40000, 9}};
   EXPECT_EQ(
       mesh_with("POSITION",
                 std::vector<std::array<std::uint16_t, 4>>{{0, 0, 9}, {65535, 0, 9}, {0, 40000, 9}},
-                u16, 3, false)
+                test::component_u16, 3, false)
           .positions,
       large);
 }
@@ -68,28 +67,28 @@ TEST(Quantization, NormalizedOnesAreFractionsOfTheLargest) {
   // glTF 2.0, section 3.6.2.2: max(c / 127, -1) and so on.
   const Mesh bytes = mesh_with(
       "POSITION", std::vector<std::array<std::int8_t, 4>>{{-128, -127, 0}, {127, 0, 0}, {0, 64, 0}},
-      s8, 3, true);
+      test::component_s8, 3, true);
   expect_near(bytes.positions[0], {-1, -1, 0});
   expect_near(bytes.positions[1], {1, 0, 0});
   expect_near(bytes.positions[2], {0, 64.0F / 127, 0});
   const Mesh shorts = mesh_with(
       "POSITION",
       std::vector<std::array<std::int16_t, 4>>{{-32768, -32767, 0}, {32767, 0, 0}, {0, 16384, 0}},
-      s16, 3, true);
+      test::component_s16, 3, true);
   expect_near(shorts.positions[0], {-1, -1, 0});
   expect_near(shorts.positions[1], {1, 0, 0});
   expect_near(shorts.positions[2], {0, 16384.0F / 32767, 0});
   const Mesh unsigned_bytes = mesh_with(
       "POSITION", std::vector<std::array<std::uint8_t, 4>>{{0, 0, 51}, {255, 0, 51}, {0, 102, 51}},
-      u8, 3, true);
+      test::component_u8, 3, true);
   expect_near(unsigned_bytes.positions[2], {0, 0.4F, 0.2F});
 }
 
 TEST(Quantization, TheNodePlacesThem) {
   const double step = 1.0 / 16;
-  const Mesh mesh =
-      mesh_with("POSITION", std::vector<std::array<std::int16_t, 4>>{{0, 0}, {16, 0}, {0, -32}},
-                s16, 3, false, {{"scale", {step, step, step}}, {"translation", {1, 2, 3}}});
+  const Mesh mesh = mesh_with(
+      "POSITION", std::vector<std::array<std::int16_t, 4>>{{0, 0}, {16, 0}, {0, -32}},
+      test::component_s16, 3, false, {{"scale", {step, step, step}}, {"translation", {1, 2, 3}}});
   expect_near(mesh.positions[0], {1, 2, 3});
   expect_near(mesh.positions[1], {2, 2, 3});
   expect_near(mesh.positions[2], {1, 0, 3});
@@ -98,13 +97,13 @@ TEST(Quantization, TheNodePlacesThem) {
 TEST(Quantization, NormalsAreOfUnitLength) {
   const Mesh bytes = mesh_with(
       "NORMAL", std::vector<std::array<std::int8_t, 4>>{{127, 0, 0}, {0, -128, 0}, {76, 0, 102}},
-      s8, 3, true);
+      test::component_s8, 3, true);
   expect_near(bytes.normals[0], {1, 0, 0});
   expect_near(bytes.normals[1], {0, -1, 0});
   expect_near(bytes.normals[2], V3f(76, 0, 102).normalized());
   const Mesh shorts = mesh_with(
-      "NORMAL", std::vector<std::array<std::int16_t, 4>>{{0, 0, 32767}, {0, 1, 0}, {-3, 0, 4}}, s16,
-      3, true);
+      "NORMAL", std::vector<std::array<std::int16_t, 4>>{{0, 0, 32767}, {0, 1, 0}, {-3, 0, 4}},
+      test::component_s16, 3, true);
   expect_near(shorts.normals[1], {0, 1, 0});
   expect_near(shorts.normals[2], {-0.6F, 0, 0.8F});
 }
@@ -113,22 +112,23 @@ TEST(Quantization, TextureCoordinates) {
   const auto uvs = [](const Mesh& mesh) { return mesh.uvs[0]; };
   const std::vector<V2f> plain{{0, 2}, {300, 0}, {-7, 1}};
   EXPECT_EQ(uvs(mesh_with("TEXCOORD_0",
-                          std::vector<std::array<std::int16_t, 4>>{{0, 2}, {300, 0}, {-7, 1}}, s16,
-                          2, false)),
+                          std::vector<std::array<std::int16_t, 4>>{{0, 2}, {300, 0}, {-7, 1}},
+                          test::component_s16, 2, false)),
             plain);
   EXPECT_EQ(uvs(mesh_with("TEXCOORD_0",
-                          std::vector<std::array<std::uint8_t, 4>>{{0, 2}, {200, 0}, {7, 1}}, u8, 2,
-                          false))[1],
+                          std::vector<std::array<std::uint8_t, 4>>{{0, 2}, {200, 0}, {7, 1}},
+                          test::component_u8, 2, false))[1],
             V2f(200, 0));
   EXPECT_EQ(uvs(mesh_with("TEXCOORD_0",
-                          std::vector<std::array<std::int8_t, 4>>{{127, -127}, {0, 0}, {0, 0}}, s8,
-                          2, true))[0],
+                          std::vector<std::array<std::int8_t, 4>>{{127, -127}, {0, 0}, {0, 0}},
+                          test::component_s8, 2, true))[0],
             V2f(1, -1));
 }
 
 TEST(Quantization, PlainIntegersAreNoNormals) {
   try {
-    mesh_with("NORMAL", std::vector<std::array<std::int8_t, 4>>{{127}, {127}, {127}}, s8, 3, false);
+    mesh_with("NORMAL", std::vector<std::array<std::int8_t, 4>>{{127}, {127}, {127}},
+              test::component_s8, 3, false);
     FAIL();
   } catch (const SceneError& e) {
     EXPECT_NE(std::string(e.what()).find("used as NORMAL of meshes[0].primitives[0]"),
