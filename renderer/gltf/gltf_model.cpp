@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "renderer/gltf/gltf_compression.h"
 #include "renderer/gltf/gltf_data_uri.h"
 
 namespace lacuna::gltf {
@@ -41,6 +42,9 @@ Bytes bytes_named(const GltfObject& buffer, SceneFolder& folder, Hasher& content
 
 file::Buffer read_buffer(const GltfObject& buffer, const Framing& framing, SceneFolder& folder,
                          Hasher& content) {
+  if (is_fallback(buffer)) {
+    return file::Buffer(Bytes(buffer.integer("byteLength", 1, max_decoded_bytes)));
+  }
   if (buffer.has("uri")) return file::Buffer(bytes_named(buffer, folder, content));
   return file::Buffer(framing.bin());
 }
@@ -133,6 +137,7 @@ file::Model read_model(const Framing& framing, const GltfObject& root, SceneFold
   for (const GltfObject& mesh : root.objects("meshes")) {
     model.meshes.push_back(read_mesh(mesh, model.accessors.size(), root.array_size("materials")));
   }
+  decode_compressed(root, model);
   return model;
 }
 

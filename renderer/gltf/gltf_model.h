@@ -91,7 +91,7 @@ struct Model {
 }  // namespace file
 
 /// Reads a file that check_structure() has passed and that outlives the model. External buffers are
-/// read through `folder` and enter `content`. Throws SceneError.
+/// read through `folder` and enter `content`; compressed data are decoded. Throws SceneError.
 file::Model read_model(const Framing& framing, const GltfObject& root, SceneFolder& folder,
                        Hasher& content);
 

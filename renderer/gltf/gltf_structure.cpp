@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderer/gltf/gltf_compression.h"
 #include "renderer/gltf/gltf_guard.h"
 
 namespace lacuna::gltf {
@@ -11,9 +12,9 @@ namespace {
 constexpr std::uint64_t max_bytes = (std::uint64_t{1} << 32) - 1;
 
 constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
-     "KHR_materials_specular", "KHR_materials_transmission", "KHR_mesh_quantization",
-     "KHR_texture_transform"});
+    {meshopt_extension, draco_extension, "KHR_lights_punctual", "KHR_materials_emissive_strength",
+     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
+     "KHR_mesh_quantization", "KHR_texture_transform"});
 
 struct Sizes {
   explicit Sizes(const GltfObject& root)
@@ -50,8 +51,8 @@ void check_asset(const GltfObject& root) {
   }
 }
 
-/// Refuses what is only there in the form of an extension, without the fallback that glTF itself
-/// reads.
+/// Refuses what is only there in the form of an extension that is not supported, without the
+/// fallback that glTF itself reads.
 void refuse_compressed(const GltfObject& place) {
   const auto extensions = place.object("extensions");
   if (!extensions) return;
@@ -68,10 +69,10 @@ void check_buffers(const GltfObject& root, const Framing& framing) {
     const std::uint64_t bytes = buffer.integer("byteLength", 1, max_bytes);
     if (buffer.has("uri")) {
       buffer.string("uri");
-    } else if (!framing.binary || i != 0) {
+    } else if (!is_fallback(buffer) && (!framing.binary || i != 0)) {
       refuse_compressed(buffer);
       buffer.fail("uri is missing; only the first buffer of a GLB has none");
-    } else if (bytes > framing.bin_bytes) {
+    } else if (!is_fallback(buffer) && bytes > framing.bin_bytes) {
       buffer.fail("byteLength is " + std::to_string(bytes) + "; the BIN chunk has " +
                   std::to_string(framing.bin_bytes) + " bytes");
     }
@@ -224,6 +225,7 @@ void check_data(const GltfObject& primitive, const std::vector<GltfObject>& acce
   const auto lacks_data = [&](const std::optional<std::size_t>& accessor) {
     return accessor && !accessors[*accessor].has("bufferView");
   };
+  if (needed_draco(primitive, accessors)) return;
   const GltfObject attributes = *primitive.object("attributes");
   const auto indices = primitive.index("indices", accessors.size(), "accessors");
   for (const std::string& name : attributes.keys()) {
@@ -317,6 +319,7 @@ void check_structure(const GltfObject& root, const Framing& framing) {
   check_accessors(root, sizes);
   check_images(root, sizes);
   check_meshes(root, sizes);
+  check_compression(root);
   check_nodes(root, sizes);
 }
 

@@ -58,8 +58,8 @@ std::vector<HostileCase> structure_cases() {
   return {
       set("NoVersion", "/asset", Json::object(), {"asset: version: missing"}),
       set("VersionOne", "/asset/version", "1.0", {"asset: version: found string \"1.0\""}),
-      set("RequiredExtension", "/extensionsRequired", {"KHR_draco_mesh_compression"},
-          {"extensionsRequired: found \"KHR_draco_mesh_compression\"", "KHR_materials_ior"}),
+      set("RequiredExtension", "/extensionsRequired", {"KHR_texture_basisu"},
+          {"extensionsRequired: found \"KHR_texture_basisu\"", "KHR_materials_ior"}),
       set("BuffersNotAnArray", "/accessors", 7, {"accessors: found number 7; allowed: a list"}),
       set("AccessorNotAnObject", "/accessors/0", 7,
           {"accessors[0]: found number 7; allowed: an object"}),
@@ -139,20 +139,19 @@ std::vector<HostileCase> structure_cases() {
           {"the scene has no triangles", "left out: 1 primitives of points or lines)"}),
       set("NothingButHidden", "/nodes/0/scale", {0, 0, 0},
           {"the scene has no triangles", "left out: 1 meshes under a scale of 0)"}),
-      compressed("DracoIndices", 1, "KHR_draco_mesh_compression"),
-      compressed("DracoPositions", 0, "KHR_draco_mesh_compression"),
+      compressed("CompressedIndices", 1, "ACME_mesh_compression"),
+      compressed("CompressedPositions", 0, "ACME_mesh_compression"),
       set("IndicesWithoutData", "/accessors/1",
           {{"componentType", 5125}, {"count", 3}, {"type", "SCALAR"}},
           {"accessors[1]: used as indices of triangles: it has no bufferView"}),
-      {"MeshoptWithoutFallback",
+      {"BufferWithoutFallback",
        [](GlbBuilder& b) {
          b.json["buffers"] = {
              {{"byteLength", b.bin.size()}},
-             {{"byteLength", 48},
-              {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+             {{"byteLength", 48}, {"extensions", {{"ACME_compression", {{"fallback", true}}}}}}};
          b.json["bufferViews"][0]["buffer"] = 1;
        },
-       {"buffers[1]: its data come by extension EXT_meshopt_compression, which is not supported"}},
+       {"buffers[1]: its data come by extension ACME_compression, which is not supported"}},
       set("NoNodes", "/scenes/0/nodes", Json::array(), {"the scene has no triangles"}),
   };
 }
