@@ -25,8 +25,8 @@ bool is_fallback(const GltfObject& buffer);
 std::optional<GltfObject> needed_draco(const GltfObject& primitive,
                                        const std::vector<GltfObject>& accessors);
 
-/// Part of check_structure(): refuses compressed data whose sizes do not fit those of the buffers
-/// and accessors, or that claim too much for the bytes they have.
+/// Part of check_structure(): refuses compressed data whose sizes do not fit those of the buffers and
+/// accessors, what claims too much for the bytes it has, and large accessors without any data.
 void check_compression(const GltfObject& root);
 
 /// Fills fallback buffers, and adds buffers with what Draco held. Throws SceneError.

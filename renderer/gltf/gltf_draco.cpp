@@ -66,7 +66,7 @@ class HeaderReader {
 };
 
 /// Nearly nothing is spent on a flat grid.
-constexpr std::uint64_t most_elements_per_byte = 1024;
+constexpr std::uint64_t most_elements_per_byte = 256;
 constexpr std::uint64_t always_allowed = 1 << 16;
 
 template <class T>

@@ -14,7 +14,7 @@ namespace lacuna::gltf {
 namespace {
 
 constexpr std::size_t max_triangles = std::size_t{1} << 27;
-constexpr std::size_t max_displacements = std::size_t{1} << 30;
+constexpr std::size_t max_moves = std::size_t{1} << 27;
 
 struct Counts {
   Dropped dropped;
@@ -167,23 +167,32 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   return mesh;
 }
 
+/// How often vertices are moved by morph targets, and by the joints of a skin.
+std::size_t moves_of(const file::Model& model, const file::Primitive& primitive,
+                     const PlacedNode& node) {
+  const std::size_t vertices =
+      model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))].count;
+  const std::size_t targets = std::min(primitive.targets.size(), node.weights.size());
+  const auto unused = std::count(node.weights.begin(),
+                                 node.weights.begin() + static_cast<std::ptrdiff_t>(targets), 0.0);
+  return vertices * (targets - static_cast<std::size_t>(unused) + (node.skin ? 4 : 0));
+}
+
 /// A file of a few kilobytes can place one mesh a million times: count before anything is built.
 /// Likewise a morph target of some bytes, with an accessor that others have, moves every vertex.
 void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes) {
   std::size_t total = 0;
-  std::size_t displacements = 0;
+  std::size_t moves = 0;
   for (const PlacedNode& node : nodes) {
     const auto mesh = mesh_of(model, node);
     if (!mesh) continue;
     for (const auto& primitive : model.meshes[*mesh].primitives) {
       if (!is_drawn(primitive)) continue;
       total += count_triangles(model, primitive);
-      displacements +=
-          std::min(primitive.targets.size(), node.weights.size()) *
-          model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))].count;
-      if (displacements > max_displacements) {
-        node.place.fail("morph targets displace more than " + std::to_string(max_displacements) +
-                        " vertices in all down to here");
+      moves += moves_of(model, primitive, node);
+      if (moves > max_moves) {
+        node.place.fail("morph targets and joints move vertices more than " +
+                        std::to_string(max_moves) + " times in all down to here");
       }
       if (total > max_triangles) {
         node.place.fail("more than " + std::to_string(max_triangles) +

@@ -124,9 +124,6 @@ std::uint64_t element_bytes(const GltfObject& accessor) {
   return bytes->second * count->second;
 }
 
-/// Accessors without a bufferView claim a size that no bytes stand for.
-constexpr std::uint64_t max_without_data = std::uint64_t{1} << 27;
-
 /// `count` tightly packed elements of a bufferView.
 void check_packed(const GltfObject& part, const std::vector<GltfObject>& views, std::uint64_t count,
                   std::uint64_t element) {
@@ -166,13 +163,7 @@ void check_accessors(const GltfObject& root, const Sizes& sizes) {
       check_sparse(*sparse, views, count, element);
     }
     const auto view = accessor.index("bufferView", sizes.buffer_views, "bufferViews");
-    if (!view) {
-      if (count > max_without_data) {
-        accessor.refuse("count",
-                        "at most " + std::to_string(max_without_data) + " without a bufferView");
-      }
-      continue;
-    }
+    if (!view) continue;
     const std::uint64_t stride = views[*view].integer("byteStride", element, 4, 252);
     if (stride < element) {
       accessor.fail("elements of " + std::to_string(element) + " bytes do not fit the byteStride " +

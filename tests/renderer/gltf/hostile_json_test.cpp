@@ -99,7 +99,7 @@ std::vector<HostileCase> structure_cases() {
           {"the scene has no triangles (dropped: 1 of zero area"}),
       set("ZerosWithoutEnd", "/accessors/0",
           {{"componentType", 5126}, {"count", 4000000000}, {"type", "VEC3"}},
-          {"accessors[0]: count: found number 4000000000; allowed: at most 134217728 without"}),
+          {"accessors[0]: count: found number 4000000000; allowed: at most 16777216 without"}),
       set("PositionsAsIntegers", "/accessors/0/componentType", 5125,
           {"accessors[0], used as POSITION of meshes[0].primitives[0]"}),
       set("IndicesAsFloats", "/accessors/1/componentType", 5126, {"accessors[1], used as indices"}),
