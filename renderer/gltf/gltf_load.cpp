@@ -20,6 +20,9 @@ void warn_of_unread_parts(const GltfObject& root, const SceneTime& time, Warning
         "animations are left out: the scene is in its static pose; the job's time shows "
         "them at a moment");
   }
+  if (!time.animation.empty() && !time.seconds) {
+    warnings.once("animation " + in_quotes(time.animation) + " is left out, as no time is given");
+  }
   for (const std::string& name : root.strings("extensionsUsed")) {
     if (!extension_supported(name)) warnings.once(unsupported_extension(name));
   }

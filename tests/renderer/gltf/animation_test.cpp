@@ -208,6 +208,12 @@ TEST(Animation, WithoutOneTimeIsWarnedOf) {
   EXPECT_EQ(scene.warnings[0], "the file has no animations: time changes nothing");
 }
 
+TEST(Animation, ANameWithoutTimeIsWarnedOf) {
+  const SceneData scene = load_at(test::triangle_scene(), {std::nullopt, "walk"});
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_EQ(scene.warnings[0], "animation \"walk\" is left out, as no time is given");
+}
+
 TEST(Animation, FaultsAreRefusedWithTheirPlace) {
   GlbBuilder good = test::triangle_scene();
   const auto output =
