@@ -22,13 +22,13 @@ struct Framing {
 /// a chunk has the wrong type.
 Framing check_framing(std::span<const std::uint8_t> file);
 
-/// Parses the JSON, at most 64 levels deep. Throws SceneError.
+/// Parses the JSON, at most 64 levels deep (tinygltf recurses). Throws SceneError.
 Json parse_json(std::span<const std::uint8_t> text);
 
-/// Validates what read_model() relies on: types, ranges and indices of buffers, bufferViews,
-/// accessors, images, textures, samplers, meshes, nodes and scenes; that each bufferView lies
-/// inside its buffer and each accessor inside its bufferView; that required extensions are
-/// supported. Materials, cameras and lights are validated where they are read. Throws SceneError.
+/// Validates what tinygltf does not: types, ranges and indices of buffers, bufferViews, accessors,
+/// images, textures, samplers, meshes, nodes and scenes; that each bufferView lies inside its
+/// buffer and each accessor inside its bufferView; that required extensions are supported.
+/// Materials, cameras and lights are validated where they are read. Throws SceneError.
 void check_structure(const GltfObject& root, const Framing& framing);
 
 /// The names that may stand in extensionsRequired.

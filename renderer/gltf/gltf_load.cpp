@@ -64,7 +64,7 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
 
   Hasher content;
   content.add(std::span<const std::uint8_t>(bytes));
-  const file::Model model = read_model(framing, root, folder, content);
+  const file::Model model = read_model(bytes, framing, root, folder, content);
   Pose pose;
   if (time.seconds) {
     pose = pose_at(root, model, *time.seconds, time.animation, warnings);

@@ -138,7 +138,7 @@ void decode_meshopt(const GltfObject& root, file::Model& model) {
     if (!c) continue;
     const file::BufferView& view = model.views[i];
     decode(*c, model.buffers[c->buffer].data() + c->offset,
-           model.buffers[view.buffer].own() + view.offset);
+           model.buffers[view.buffer].data() + view.offset);
   }
 }
 

@@ -4,8 +4,10 @@
 
 namespace lacuna::gltf {
 
-/// See check_compression() and decode_compressed(), for EXT_meshopt_compression.
+/// Part of check_compression(): EXT_meshopt_compression.
 void check_meshopt(const GltfObject& root);
+
+/// Fills the fallback buffers. Throws SceneError.
 void decode_meshopt(const GltfObject& root, file::Model& model);
 
 }  // namespace lacuna::gltf

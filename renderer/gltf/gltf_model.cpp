@@ -1,113 +1,206 @@
 #include "renderer/gltf/gltf_model.h"
 
+// The library links tinygltf as Debian compiles it, so no source defines its implementation.
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#include <tiny_gltf.h>
+
 #include <algorithm>
 #include <array>
+#include <deque>
+#include <new>
 #include <utility>
 
+#include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_compression.h"
-#include "renderer/gltf/gltf_data_uri.h"
+#include "renderer/gltf/gltf_meshopt.h"
 
 namespace lacuna::gltf {
 namespace {
 
-constexpr std::uint64_t any_size = (std::uint64_t{1} << 32) - 1;
+/// The buffers that are files to tinygltf, in the order in which it asks, which is theirs.
+using BufferQueue = std::deque<Bytes>;
 
-constexpr auto element_types =
-    std::to_array<std::pair<std::string_view, ElementType>>({{"SCALAR", ElementType::scalar},
-                                                             {"VEC2", ElementType::vec2},
-                                                             {"VEC3", ElementType::vec3},
-                                                             {"VEC4", ElementType::vec4},
-                                                             {"MAT2", ElementType::mat2},
-                                                             {"MAT3", ElementType::mat3},
-                                                             {"MAT4", ElementType::mat4}});
-
-int index_or_none(const GltfObject& place, std::string_view key, std::size_t size,
-                  std::string_view target) {
-  const auto index = place.index(key, size, target);
-  return index ? static_cast<int>(*index) : -1;
+bool has_fallbacks(const GltfObject& root) {
+  const auto buffers = root.objects("buffers");
+  return std::any_of(buffers.begin(), buffers.end(), is_fallback);
 }
 
-Bytes bytes_named(const GltfObject& buffer, SceneFolder& folder, Hasher& content) {
-  const std::string uri = buffer.string("uri");
-  auto inside = decode_data_uri(buffer, uri);
-  Bytes bytes = inside ? std::move(*inside) : folder.read(uri, buffer.label(), InputRole::buffer);
-  const std::uint64_t needed = buffer.integer("byteLength", 1, any_size);
+Bytes read_external(const GltfObject& buffer, const std::string& uri, std::uint64_t needed,
+                    SceneFolder& folder, Hasher& content) {
+  Bytes bytes = folder.read(uri, buffer.label(), InputRole::buffer);
   if (bytes.size() < needed) {
-    buffer.fail((inside ? "its data: URI has " : in_quotes(uri) + " has ") +
-                std::to_string(bytes.size()) + " bytes; byteLength is " + std::to_string(needed));
+    buffer.fail(in_quotes(uri) + " has " + std::to_string(bytes.size()) + " bytes; byteLength is " +
+                std::to_string(needed));
   }
-  if (!inside) content.add(std::span<const std::uint8_t>(bytes));
+  content.add(std::span<const std::uint8_t>(bytes));
+  bytes.resize(needed);  // a longer file is legal, but tinygltf wants the exact size
   return bytes;
 }
 
-file::Buffer read_buffer(const GltfObject& buffer, const Framing& framing, SceneFolder& folder,
+BufferQueue read_buffers(const Framing& framing, const GltfObject& root, SceneFolder& folder,
                          Hasher& content) {
-  if (is_fallback(buffer)) {
-    return file::Buffer(Bytes(buffer.integer("byteLength", 1, max_decoded_bytes)));
-  }
-  if (buffer.has("uri")) return file::Buffer(bytes_named(buffer, folder, content));
-  return file::Buffer(framing.bin());
-}
-
-file::BufferView read_view(const GltfObject& view, std::size_t buffers) {
-  file::BufferView out;
-  out.buffer = *view.index("buffer", buffers, "buffers");
-  out.offset = view.integer("byteOffset", 0, 0, any_size);
-  out.bytes = view.integer("byteLength", 1, any_size);
-  if (view.has("byteStride")) out.stride = view.integer("byteStride", 4, 252);
-  return out;
-}
-
-file::Sparse read_sparse(const GltfObject& sparse, std::size_t views) {
-  const GltfObject indices = *sparse.object("indices");
-  const GltfObject values = *sparse.object("values");
-  file::Sparse out;
-  out.count = sparse.integer("count", 1, any_size);
-  out.indices_view = *indices.index("bufferView", views, "bufferViews");
-  out.indices_offset = indices.integer("byteOffset", 0, 0, any_size);
-  out.indices_component = static_cast<int>(indices.integer("componentType", 0, any_size));
-  out.values_view = *values.index("bufferView", views, "bufferViews");
-  out.values_offset = values.integer("byteOffset", 0, 0, any_size);
-  return out;
-}
-
-file::Accessor read_accessor(const GltfObject& accessor, std::size_t views) {
-  file::Accessor out;
-  out.view = index_or_none(accessor, "bufferView", views, "bufferViews");
-  out.offset = accessor.integer("byteOffset", 0, 0, any_size);
-  out.count = accessor.integer("count", 1, any_size);
-  out.component = static_cast<int>(accessor.integer("componentType", 0, any_size));
-  out.normalized = accessor.boolean("normalized", false);
-  const std::string type = accessor.string("type");
-  for (const auto& [name, value] : element_types) {
-    if (name == type) out.type = value;
-  }
-  if (const auto sparse = accessor.object("sparse")) out.sparse = read_sparse(*sparse, views);
-  return out;
-}
-
-file::Attributes read_attributes(const GltfObject& attributes, std::size_t accessors) {
-  file::Attributes out;
-  for (const std::string& name : attributes.keys()) {
-    out[name] = index_or_none(attributes, name, accessors, "accessors");
-  }
-  return out;
-}
-
-file::Mesh read_mesh(const GltfObject& mesh, std::size_t accessors, std::size_t materials) {
-  file::Mesh out;
-  out.name = mesh.string("name", "");
-  for (const GltfObject& primitive : mesh.objects("primitives")) {
-    file::Primitive& to = out.primitives.emplace_back();
-    to.attributes = read_attributes(*primitive.object("attributes"), accessors);
-    to.indices = index_or_none(primitive, "indices", accessors, "accessors");
-    to.material = index_or_none(primitive, "material", materials, "materials");
-    to.mode = static_cast<int>(primitive.integer("mode", mode_triangles, 0, 6));
-    for (const GltfObject& target : primitive.objects("targets")) {
-      to.targets.push_back(read_attributes(target, accessors));
+  BufferQueue queue;
+  const bool bin_is_a_file = has_fallbacks(root);
+  for (const GltfObject& buffer : root.objects("buffers")) {
+    const std::uint64_t needed = buffer.integer("byteLength", 1, ~std::uint32_t{0});
+    if (is_fallback(buffer)) {
+      queue.emplace_back(needed);
+    } else if (!buffer.has("uri")) {
+      const auto bin = framing.bin();
+      if (bin_is_a_file) queue.emplace_back(bin.begin(), bin.begin() + static_cast<long>(needed));
+    } else {
+      const std::string uri = buffer.string("uri");
+      refuse_data_uri(buffer, uri);
+      if (tinygltf::IsDataURI(uri)) continue;
+      queue.push_back(read_external(buffer, uri, needed, folder, content));
     }
   }
-  return out;
+  return queue;
+}
+
+/// The JSON of a file with fallback buffers, which tinygltf refuses: they and the BIN chunk get the
+/// uri of a file.
+std::string json_without_fallbacks(const Framing& framing, const GltfObject& root) {
+  Json json = parse_json(framing.json);
+  std::size_t i = 0;
+  for (const GltfObject& buffer : root.objects("buffers")) {
+    Json& named = json["buffers"][i++];
+    if (is_fallback(buffer) || !buffer.has("uri")) named["uri"] = "queued";
+  }
+  return json.dump();
+}
+
+/// tinygltf never touches the file system: buffers come from the queue, images are left alone. A
+/// data: URI that it does not know it takes for the name of a file.
+tinygltf::FsCallbacks callbacks(BufferQueue& queue) {
+  tinygltf::FsCallbacks fs{};
+  fs.user_data = &queue;
+  fs.FileExists = [](const std::string&, void* user) {
+    return !static_cast<BufferQueue*>(user)->empty();
+  };
+  fs.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  fs.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string&,
+                        void* user) {
+    auto& waiting = *static_cast<BufferQueue*>(user);
+    *out = std::move(waiting.front());
+    waiting.pop_front();
+    return true;
+  };
+  fs.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                         void*) { return false; };
+  return fs;
+}
+
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+std::string first_line(const std::string& text) {
+  constexpr std::size_t longest = 200;
+  return text.substr(0, std::min(text.find('\n'), longest));
+}
+
+/// Buffers are filled; images keep their encoded bytes only if they came as a data: URI.
+tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
+                            const GltfObject& root, SceneFolder& folder, Hasher& content) {
+  BufferQueue queue = read_buffers(framing, root, folder, content);
+  std::string text;
+  if (has_fallbacks(root)) text = json_without_fallbacks(framing, root);
+  tinygltf::TinyGLTF parser;
+  parser.SetFsCallbacks(callbacks(queue));
+  parser.SetImageLoader(keep_encoded, nullptr);
+  tinygltf::Model model;
+  std::string error;
+  std::string warning;
+  bool parsed = false;
+  try {
+    // No base folder: names reach nobody but the callbacks.
+    if (framing.binary && text.empty()) {
+      parsed = parser.LoadBinaryFromMemory(&model, &error, &warning, file.data(),
+                                           static_cast<unsigned>(file.size()), "");
+    } else {
+      const auto* first = text.empty() ? reinterpret_cast<const char*>(file.data()) : text.data();
+      const std::size_t size = text.empty() ? file.size() : text.size();
+      parsed = parser.LoadASCIIFromString(&model, &error, &warning, first,
+                                          static_cast<unsigned>(size), "");
+    }
+  } catch (const std::bad_alloc&) {
+    throw;  // says nothing of the file
+  } catch (const std::exception& e) {
+    parsed = false;
+    error = e.what();
+  }
+  if (!parsed) throw SceneError("tinygltf: " + first_line(error));
+  return model;
+}
+
+ElementType element_type(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_VEC2:
+      return ElementType::vec2;
+    case TINYGLTF_TYPE_VEC3:
+      return ElementType::vec3;
+    case TINYGLTF_TYPE_VEC4:
+      return ElementType::vec4;
+    case TINYGLTF_TYPE_MAT2:
+      return ElementType::mat2;
+    case TINYGLTF_TYPE_MAT3:
+      return ElementType::mat3;
+    case TINYGLTF_TYPE_MAT4:
+      return ElementType::mat4;
+    default:
+      return ElementType::scalar;
+  }
+}
+
+file::Sparse translated_sparse(const tinygltf::Accessor& accessor) {
+  const auto& from = accessor.sparse;
+  file::Sparse to;
+  if (!from.isSparse) return to;
+  to.count = static_cast<std::size_t>(from.count);
+  to.indices_view = static_cast<std::size_t>(from.indices.bufferView);
+  to.indices_offset = static_cast<std::size_t>(from.indices.byteOffset);
+  to.indices_component = from.indices.componentType;
+  to.values_view = static_cast<std::size_t>(from.values.bufferView);
+  to.values_offset = static_cast<std::size_t>(from.values.byteOffset);
+  return to;
+}
+
+file::Mesh translated(tinygltf::Mesh& from) {
+  file::Mesh to{.name = std::move(from.name), .primitives = {}};
+  for (tinygltf::Primitive& p : from.primitives) {
+    to.primitives.push_back({.attributes = std::move(p.attributes),
+                             .indices = p.indices,
+                             .material = p.material,
+                             .mode = p.mode,
+                             .targets = std::move(p.targets)});
+  }
+  return to;
+}
+
+file::Model translated(tinygltf::Model from) {
+  file::Model to;
+  for (tinygltf::Buffer& b : from.buffers) to.buffers.push_back(std::move(b.data));
+  for (const tinygltf::BufferView& v : from.bufferViews) {
+    to.views.push_back(
+        {static_cast<std::size_t>(v.buffer), v.byteOffset, v.byteLength, v.byteStride});
+  }
+  for (const tinygltf::Accessor& a : from.accessors) {
+    to.accessors.push_back({.view = a.bufferView,
+                            .offset = a.byteOffset,
+                            .count = a.count,
+                            .component = a.componentType,
+                            .normalized = a.normalized,
+                            .type = element_type(a.type),
+                            .sparse = translated_sparse(a)});
+  }
+  for (tinygltf::Mesh& m : from.meshes) to.meshes.push_back(translated(m));
+  for (tinygltf::Image& i : from.images) to.images.push_back(std::move(i.image));
+  return to;
 }
 
 }  // namespace
@@ -122,22 +215,18 @@ std::size_t component_count(ElementType type) {
   return counts[static_cast<std::size_t>(type)];
 }
 
-file::Model read_model(const Framing& framing, const GltfObject& root, SceneFolder& folder,
-                       Hasher& content) {
-  file::Model model;
-  for (const GltfObject& buffer : root.objects("buffers")) {
-    model.buffers.push_back(read_buffer(buffer, framing, folder, content));
+void refuse_data_uri(const GltfObject& place, const std::string& uri) {
+  if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
+    place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
+               "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
+               "image/png or image/jpeg");
   }
-  for (const GltfObject& view : root.objects("bufferViews")) {
-    model.views.push_back(read_view(view, model.buffers.size()));
-  }
-  for (const GltfObject& accessor : root.objects("accessors")) {
-    model.accessors.push_back(read_accessor(accessor, model.views.size()));
-  }
-  for (const GltfObject& mesh : root.objects("meshes")) {
-    model.meshes.push_back(read_mesh(mesh, model.accessors.size(), root.array_size("materials")));
-  }
-  decode_compressed(root, model);
+}
+
+file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,
+                       const GltfObject& root, SceneFolder& folder, Hasher& content) {
+  file::Model model = translated(parse_model(file, framing, root, folder, content));
+  decode_meshopt(root, model);
   return model;
 }
 

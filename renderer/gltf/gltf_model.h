@@ -24,23 +24,9 @@ enum class ElementType { scalar, vec2, vec3, vec4, mat2, mat3, mat4 };
 std::size_t component_bytes(int component);
 std::size_t component_count(ElementType type);
 
-/// The parts of a file that vertices and indices are read from, as check_structure() has passed
-/// them. Indices are -1 where the file has none.
+/// The parts of tinygltf's model that are read from, as check_structure() has passed them. Indices
+/// are -1 where the file has none.
 namespace file {
-
-/// Bytes of its own, or those of the file's BIN chunk.
-class Buffer {
- public:
-  explicit Buffer(std::vector<std::uint8_t> own) : own_(std::move(own)) {}
-  explicit Buffer(std::span<const std::uint8_t> borrowed) : borrowed_(borrowed) {}
-
-  const std::uint8_t* data() const { return own_.empty() ? borrowed_.data() : own_.data(); }
-  std::uint8_t* own() { return own_.data(); }
-
- private:
-  std::vector<std::uint8_t> own_;
-  std::span<const std::uint8_t> borrowed_;
-};
 
 struct BufferView {
   std::size_t buffer = 0, offset = 0, bytes = 0;
@@ -78,10 +64,11 @@ struct Mesh {
 };
 
 struct Model {
-  std::vector<Buffer> buffers;
+  std::vector<Bytes> buffers;
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
   std::vector<Mesh> meshes;
+  std::vector<Bytes> images;  ///< encoded; empty but for those that came as a data: URI
 
   const std::uint8_t* bytes_of(std::size_t view, std::size_t offset = 0) const {
     return buffers[views[view].buffer].data() + views[view].offset + offset;
@@ -90,9 +77,12 @@ struct Model {
 
 }  // namespace file
 
-/// Reads a file that check_structure() has passed and that outlives the model. External buffers are
-/// read through `folder` and enter `content`; compressed data are decoded. Throws SceneError.
-file::Model read_model(const Framing& framing, const GltfObject& root, SceneFolder& folder,
-                       Hasher& content);
+/// Lets tinygltf parse a file that check_structure() has passed. External buffers are read through
+/// `folder` and enter `content`; compressed data are decoded. Throws SceneError.
+file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,
+                       const GltfObject& root, SceneFolder& folder, Hasher& content);
+
+/// Throws SceneError for a data: URI of another kind than tinygltf decodes.
+void refuse_data_uri(const GltfObject& place, const std::string& uri);
 
 }  // namespace lacuna::gltf

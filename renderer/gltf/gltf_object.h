@@ -39,7 +39,8 @@ class GltfProblems final : public JsonProblems {
 };
 
 /// An object of the JSON, read by its keys. Every read throws a SceneError where the value is not
-/// what is allowed. Numbers a hair outside of their
+/// what is allowed. tinygltf reads wrong types as defaults and truncates integers, so nothing it
+/// parsed leniently is trusted before it was read through here. Numbers a hair outside of their
 /// range are clamped to it with a warning.
 class GltfObject {
  public:

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t max_bytes = (std::uint64_t{1} << 32) - 1;
 
 constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {meshopt_extension, draco_extension, "KHR_lights_punctual", "KHR_materials_emissive_strength",
+    {meshopt_extension, "KHR_lights_punctual", "KHR_materials_emissive_strength",
      "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
      "KHR_mesh_quantization", "KHR_texture_transform"});
 
@@ -216,7 +216,6 @@ void check_data(const GltfObject& primitive, const std::vector<GltfObject>& acce
   const auto lacks_data = [&](const std::optional<std::size_t>& accessor) {
     return accessor && !accessors[*accessor].has("bufferView");
   };
-  if (needed_draco(primitive, accessors)) return;
   const GltfObject attributes = *primitive.object("attributes");
   const auto indices = primitive.index("indices", accessors.size(), "accessors");
   for (const std::string& name : attributes.keys()) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "renderer/gltf/gltf_data_uri.h"
-
 namespace lacuna::gltf {
 namespace {
 
@@ -26,13 +24,15 @@ V2f to_v2f(const std::array<double, 2>& a) {
 
 constexpr std::uint64_t last_uv_set = 1;
 
-Bytes encoded_bytes(const GltfObject& image, const file::Model& model, SceneFolder& folder) {
+Bytes encoded_bytes(const GltfObject& image, const Bytes& inside, const file::Model& model,
+                    SceneFolder& folder) {
   if (const auto view = image.index("bufferView", model.views.size(), "bufferViews")) {
     const auto* first = model.bytes_of(*view);
     return {first, first + model.views[*view].bytes};
   }
+  if (!inside.empty()) return inside;
   const std::string uri = image.string("uri");
-  if (auto inside = decode_data_uri(image, uri)) return std::move(*inside);
+  refuse_data_uri(image, uri);
   return folder.read(uri, image.label(), InputRole::texture);
 }
 
@@ -94,7 +94,7 @@ std::vector<std::unique_ptr<Texture>> TextureTable::build(const file::Model& mod
   std::uint64_t all_bytes = 0;
   for (const Entry& entry : entries_) {
     const GltfObject& image = images_[entry.image];
-    Bytes bytes = encoded_bytes(image, model, folder);
+    Bytes bytes = encoded_bytes(image, model.images[entry.image], model, folder);
     all_bytes += bytes.size();
     if (all_bytes > most_bytes) {
       image.fail("is one too many: the textures have more than " + std::to_string(most_bytes) +

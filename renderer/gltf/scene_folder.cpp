@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-constexpr std::uintmax_t byte_limit = (std::uintmax_t{1} << 31) - 1;
+constexpr std::uintmax_t byte_limit = (std::uintmax_t{1} << 31) - 1;  // tinygltf counts in int
 
 constexpr std::size_t max_uri = 4096;  // PATH_MAX of Linux
 

@@ -1,6 +1,5 @@
 """Makes the seeds of tests/fuzz/corpus that are not text: small pictures and a scene of every kind that is read. Its
-glb/draco.glb and glb/meshopt.glb are the scenes of tests/renderer/gltf/draco_test.cpp and meshopt_test.cpp, with a
-camera."""
+glb/meshopt.glb is a scene of tests/renderer/gltf/meshopt_test.cpp, with a camera."""
 
 import base64
 import json

@@ -126,7 +126,7 @@ TEST(Framing, TheUnspoiltSceneLoads) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
-/// The last of two equal keys counts, for the guard and for the reader alike.
+/// The last of two equal keys counts, for the guard and for tinygltf alike.
 TEST(Framing, DuplicateKeysCannotSlipPastTheGuard) {
   const TemporaryFolder folder;
   const auto builder = test::triangle_scene();
