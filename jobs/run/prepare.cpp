@@ -123,7 +123,8 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   const WorkSection section(*p.pool, "load");
   const bool chooses = std::holds_alternative<AutoSettings>(spec.integrator);
   if (!chooses) p.integrator = make_integrator(method_of(spec.integrator));
-  SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs);
+  SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs,
+                             {spec.time, spec.animation});
   p.inputs.front().name = spec.scene;
   if (spec.material) change_material(data, *spec.material, spec.scene);
   if (spec.particles) add_particles(data, *spec.particles);

@@ -108,6 +108,8 @@ inline constexpr int max_shards = 1 << 16;
 /// One job, as posted to the service or passed to `lacuna render`.
 struct JobSpec {
   std::string scene;
+  std::optional<double> time;
+  std::string animation;
   NameOr<CameraSettings> camera;
   std::string label;
   std::array<int, 2> resolution{512, 512};
@@ -140,6 +142,13 @@ template <class V>
 void describe(V& v, JobSpec& s) {
   v("scene", s.scene,
     {.doc = "glTF or GLB file, below a scenes root", .min = 1, .max = 1024, .required = true});
+  v("time", s.time,
+    {.doc = "moment of the scene's animations; none: its static pose",
+     .min = 0,
+     .max = 1e7,
+     .unit = "s"});
+  v("animation", s.animation,
+    {.doc = "name of the only animation that `time` shows; empty: all of them", .max = 1024});
   v("camera", s.camera,
     {.doc = "name of one of the scene's cameras, or position and direction of another camera; "
             "empty: the scene's first",

@@ -8,11 +8,13 @@
 #include "renderer/gltf/gltf_limits.h"
 #include "renderer/gltf/gltf_origin.h"
 #include "renderer/gltf/gltf_primitives.h"
+#include "renderer/gltf/gltf_vertices.h"
 
 namespace lacuna::gltf {
 namespace {
 
 constexpr std::size_t max_triangles = std::size_t{1} << 27;
+constexpr std::size_t max_moves = std::size_t{1} << 27;
 
 struct Counts {
   Dropped dropped;
@@ -22,53 +24,35 @@ struct Counts {
   std::uint64_t hidden = 0;  ///< nodes with a mesh and a scale that leaves nothing of it
 };
 
-/// Relative to `origin`.
-std::vector<V3f> world_positions(const Source& source, const AccessorView& local,
+/// Relative to `origin`. A vertex that is not finite in the file stays so: its triangles are
+/// dropped.
+std::vector<V3f> world_positions(const Source& source, const Vertices& vertices,
                                  const std::vector<std::uint32_t>& kept, const V3d& origin) {
   std::vector<V3f> out(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    const auto p = local.floats<3>(kept[i]);
-    const V3f x(p[0], p[1], p[2]);
-    if (!is_finite(x)) {
-      out[i] = x;  // its triangles are dropped
-      continue;
-    }
-    const V3d world = V3d(x) * source.node.to_world;
+    const V3d world = vertices.world(kept[i]);
     for (int k = 0; k < 3; ++k) {
-      if (!(std::abs(world[k]) <= max_coordinate)) {
-        throw SceneError(source.place() + ": vertex " + std::to_string(kept[i]) + " lies at " +
-                         std::to_string(world[k]) + "; allowed: " + coordinate_rule);
-      }
+      if (std::abs(world[k]) <= max_coordinate) continue;
+      if (!vertices.finite(kept[i])) break;  // then world - origin is not finite
+      throw SceneError(source.place() + ": vertex " + std::to_string(kept[i]) + " lies at " +
+                       std::to_string(world[k]) + "; allowed: " + coordinate_rule);
     }
     out[i] = V3f(world - origin);
   }
   return out;
 }
 
-Bounds bounds_of(const AccessorView& positions, const std::vector<std::uint32_t>& kept) {
+Bounds bounds_of(const Vertices& vertices, const std::vector<std::uint32_t>& kept) {
   Bounds box;
   for (const std::uint32_t v : kept) {
-    const auto p = positions.floats<3>(v);
-    if (const V3f x(p[0], p[1], p[2]); is_finite(x)) box.add(x);
+    if (const V3f x(vertices.local(v)); is_finite(x)) box.add(x);
   }
   return box;
 }
 
-/// Normals go with the inverse transpose, which is the matrix of cofactors over the determinant.
-std::vector<V3f> world_normals(const Source& source, const std::vector<std::uint32_t>& kept) {
+std::vector<V3f> world_normals(const Vertices& vertices, const std::vector<std::uint32_t>& kept) {
   std::vector<V3f> out(kept.size());
-  const AccessorView local =
-      source.view("NORMAL", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
-  const M44d& m = source.node.to_world;
-  const double sign = source.node.mirrored ? -1 : 1;
-  const V3d cofactors[3] = {row(m, 1).cross(row(m, 2)) * sign, row(m, 2).cross(row(m, 0)) * sign,
-                            row(m, 0).cross(row(m, 1)) * sign};
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const auto n = local.floats<3>(kept[i]);
-    const V3d world = cofactors[0] * n[0] + cofactors[1] * n[1] + cofactors[2] * n[2];
-    const double length = world.length();
-    out[i] = std::isnormal(length) ? V3f(world / length) : V3f(0, 0, 0);
-  }
+  for (std::size_t i = 0; i < kept.size(); ++i) out[i] = vertices.world_normal(kept[i]);
   return out;
 }
 
@@ -109,10 +93,7 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
                     "\" needs: its textures are read at (0, 0)");
       continue;
     }
-    const AccessorView view =
-        source.view(name, TINYGLTF_TYPE_VEC2,
-                    {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
-                     TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT});
+    const AccessorView view = source.view(name, ElementType::vec2, Components::quantized);
     mesh.uvs[set].reserve(kept.size());
     for (const std::uint32_t v : kept) {
       const auto uv = view.floats<2>(v);
@@ -121,15 +102,32 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
   }
 }
 
-void warn_of_unread_attributes(const tinygltf::Primitive& primitive, Warnings& warnings) {
-  if (!primitive.targets.empty()) {
-    warnings.once("morph targets are left out: meshes keep their base shape");
+bool is_read(const std::string& attribute) {
+  return attribute == "POSITION" || attribute == "NORMAL" || attribute == "TEXCOORD_0" ||
+         attribute == "TEXCOORD_1";
+}
+
+void warn_of_vertices(const Source& source, const Vertices& vertices, Warnings& warnings) {
+  for (const auto& [name, accessor] : source.primitive().attributes) {
+    const bool of_a_skin = name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
+    if (!is_read(name) && !of_a_skin) warnings.once("vertex attribute " + name + " is left out");
   }
-  for (const auto& [name, accessor] : primitive.attributes) {
-    if (name == "POSITION" || name == "NORMAL" || name == "TEXCOORD_0" || name == "TEXCOORD_1") {
-      continue;
-    }
-    warnings.once("vertex attribute " + name + " is left out");
+  const std::size_t targets = source.primitive().targets.size();
+  if (const std::size_t weights = source.node.weights.size(); weights != targets && weights > 0) {
+    warnings.first_of("weights", source.place() + ": " + std::to_string(weights) + " weights for " +
+                                     std::to_string(targets) +
+                                     " morph targets; those without a weight are left out");
+  }
+  if (source.node.skin && !source.skinned()) {
+    warnings.first_of("unskinned", source.place() +
+                                       ": JOINTS_0 or WEIGHTS_0 is missing: its node places it, "
+                                       "and not its skin");
+  }
+  if (const SkinWeights* skin = vertices.skin(); skin != nullptr && skin->without_weights() > 0) {
+    warnings.first_of("weightless", source.place() + ": " +
+                                        std::to_string(skin->without_weights()) +
+                                        " vertices have no weights: the skin's first joint "
+                                        "carries them");
   }
 }
 
@@ -138,17 +136,16 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   mesh.material = source.primitive().material >= 0
                       ? static_cast<std::uint32_t>(source.primitive().material)
                       : static_cast<std::uint32_t>(scene.materials.size() - 1);
-  const AccessorView local =
-      source.view("POSITION", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
-  mesh.triangles = assemble_triangles(source.model, source.primitive(), local.size(),
-                                      source.node.mirrored, source.place());
+  const Vertices vertices(source);
+  mesh.triangles = assemble_triangles(source.model, source.primitive(), vertices.size(),
+                                      vertices.mirrored(), source.place());
   if (const auto spare = spare_corners(source.model, source.primitive()); spare > 0) {
     warnings.first_of("corners", source.place() + ": the last " + std::to_string(spare) +
                                      " corners make no whole triangle and are left out");
   }
-  auto kept = compact(mesh.triangles, local.size());
-  mesh.positions = world_positions(source, local, kept, scene.origin);
-  counts.coarse += is_far_for_its_size(bounds_of(local, kept)) ? 1 : 0;
+  auto kept = compact(mesh.triangles, vertices.size());
+  mesh.positions = world_positions(source, vertices, kept, scene.origin);
+  counts.coarse += is_far_for_its_size(bounds_of(vertices, kept)) ? 1 : 0;
   const Dropped dropped = drop_unusable(mesh.triangles, mesh.positions);
   if (dropped.total() > 0) {
     counts.dropped.non_finite += dropped.non_finite;
@@ -161,23 +158,42 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
     mesh.positions.resize(remaining.size());
     kept = std::move(remaining);
   }
-  if (source.attribute("NORMAL") >= 0 && source.node.rank == 3) {
-    mesh.normals = world_normals(source, kept);
+  if (source.attribute("NORMAL") >= 0 && (source.node.rank == 3 || source.skinned())) {
+    mesh.normals = world_normals(vertices, kept);
     counts.normals += mend_normals(mesh);
   }
   read_uvs(source, kept, scene.materials[mesh.material], mesh, warnings);
-  warn_of_unread_attributes(source.primitive(), warnings);
+  warn_of_vertices(source, vertices, warnings);
   return mesh;
 }
 
+/// How often vertices are moved by morph targets, and by the joints of a skin.
+std::size_t moves_of(const file::Model& model, const file::Primitive& primitive,
+                     const PlacedNode& node) {
+  const std::size_t vertices =
+      model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))].count;
+  const std::size_t targets = std::min(primitive.targets.size(), node.weights.size());
+  const auto unused = std::count(node.weights.begin(),
+                                 node.weights.begin() + static_cast<std::ptrdiff_t>(targets), 0.0);
+  return vertices * (targets - static_cast<std::size_t>(unused) + (node.skin ? 4 : 0));
+}
+
 /// A file of a few kilobytes can place one mesh a million times: count before anything is built.
-void check_total(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+/// Likewise a morph target of some bytes, with an accessor that others have, moves every vertex.
+void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes) {
   std::size_t total = 0;
+  std::size_t moves = 0;
   for (const PlacedNode& node : nodes) {
     const auto mesh = mesh_of(model, node);
     if (!mesh) continue;
     for (const auto& primitive : model.meshes[*mesh].primitives) {
-      if (is_drawn(primitive)) total += count_triangles(model, primitive);
+      if (!is_drawn(primitive)) continue;
+      total += count_triangles(model, primitive);
+      moves += moves_of(model, primitive, node);
+      if (moves > max_moves) {
+        node.place.fail("morph targets and joints move vertices more than " +
+                        std::to_string(max_moves) + " times in all down to here");
+      }
       if (total > max_triangles) {
         node.place.fail("more than " + std::to_string(max_triangles) +
                         " triangles in all down to here");
@@ -186,18 +202,20 @@ void check_total(const tinygltf::Model& model, const std::vector<PlacedNode>& no
   }
 }
 
-void add_node(const tinygltf::Model& model, const PlacedNode& node, SceneData& scene,
-              Counts& counts, Warnings& warnings) {
+void add_node(const file::Model& model, const PlacedNode& node, const Skins& skins,
+              SceneData& scene, Counts& counts, Warnings& warnings) {
   const auto mesh_index = mesh_of(model, node);
   if (!mesh_index) return;
-  const tinygltf::Mesh& mesh = model.meshes[*mesh_index];
+  const file::Mesh& mesh = model.meshes[*mesh_index];
   for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
-    const tinygltf::Primitive& primitive = mesh.primitives[k];
+    const file::Primitive& primitive = mesh.primitives[k];
     if (!is_drawn(primitive)) {
       ++(is_triangle_mode(primitive.mode) ? counts.without_position : counts.points_and_lines);
       continue;
     }
-    Mesh built = build_mesh({model, *mesh_index, k, node}, scene, counts, warnings);
+    const Source source{model, *mesh_index, k, node, skins};
+    if (source.hidden()) continue;
+    Mesh built = build_mesh(source, scene, counts, warnings);
     built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
     if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
   }
@@ -217,15 +235,14 @@ std::string left_out(const Counts& counts) {
 
 }  // namespace
 
-void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
-                  SceneData& scene, Warnings& warnings) {
+void build_meshes(const file::Model& model, const std::vector<PlacedNode>& nodes,
+                  const Skins& skins, SceneData& scene, Warnings& warnings) {
   check_total(model, nodes);
-  scene.origin = scene_origin(model, nodes);
+  scene.origin = scene_origin(model, nodes, skins);
   Counts counts;
   for (const PlacedNode& node : nodes) {
-    if (node.place.has("skin")) warnings.once("skins are left out: meshes keep their bind pose");
-    if (node.place.has("mesh") && node.rank < 2) ++counts.hidden;
-    add_node(model, node, scene, counts, warnings);
+    if (node.place.has("mesh") && node.rank < 2 && !node.skin) ++counts.hidden;
+    add_node(model, node, skins, scene, counts, warnings);
   }
   scene.dropped_triangles = counts.dropped.total();
   const std::string dropped = std::to_string(counts.dropped.degenerate) + " of zero area, " +

@@ -12,6 +12,9 @@ struct Framing {
   bool binary = false;  ///< a GLB
   std::span<const std::uint8_t> json;
   std::uint64_t bin_bytes = 0;  ///< length of the BIN chunk; 0: none
+
+  /// The BIN chunk, behind the JSON and a header of 8 bytes.
+  std::span<const std::uint8_t> bin() const { return {json.data() + json.size() + 8, bin_bytes}; }
 };
 
 /// Splits a file into its chunks. A file with the magic bytes of GLB is a GLB, any other is JSON.

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "renderer/gltf/gltf_animation.h"
 #include "renderer/gltf/gltf_cameras.h"
 #include "renderer/gltf/gltf_geometry.h"
 #include "renderer/gltf/gltf_guard.h"
@@ -7,50 +8,77 @@
 #include "renderer/gltf/gltf_materials.h"
 #include "renderer/gltf/gltf_nodes.h"
 #include "renderer/gltf/gltf_origin.h"
+#include "renderer/gltf/gltf_skins.h"
 
 namespace lacuna {
 namespace gltf {
 namespace {
 
-void warn_of_unread_parts(const GltfObject& root, Warnings& warnings) {
-  if (root.array_size("animations") > 0) {
-    warnings.once("animations are left out: the scene stands still in its rest pose");
+void warn_of_unread_parts(const GltfObject& root, const SceneTime& time, Warnings& warnings) {
+  if (root.array_size("animations") > 0 && !time.seconds) {
+    warnings.once(
+        "animations are left out: the scene is in its static pose; the job's time shows "
+        "them at a moment");
+  }
+  if (!time.animation.empty() && !time.seconds) {
+    warnings.once("animation " + in_quotes(time.animation) + " is left out, as no time is given");
   }
   for (const std::string& name : root.strings("extensionsUsed")) {
     if (!extension_supported(name)) warnings.once(unsupported_extension(name));
   }
 }
 
-SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs) {
+/// What is hashed beside the bytes of the files: those alone for the static pose.
+void add_time(const SceneTime& time, Hasher& content) {
+  if (!time.seconds) return;
+  content.add(std::span<const double>(&*time.seconds, 1));
+  content.add(std::span<const char>(time.animation));
+}
+
+SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs,
+               const SceneTime& time) {
   SceneFolder folder(file);
   const Bytes bytes = folder.read_main();
   const Framing framing = check_framing(bytes);
   const Json json = parse_json(framing.json);
-  Warnings warnings;
-  GltfProblems problems(json, warnings);
+  Warnings warnings, unused;
+  GltfProblems problems(json, warnings), quiet(json, unused);
   const GltfObject root(json, problems);
   check_structure(root, framing);
 
   SceneData scene;
   TextureTable textures(root, warnings);
   scene.materials = read_materials(root, textures, warnings);
-  const auto nodes = place_nodes(root, warnings);
-  const auto place_cameras_and_lights = [&] {
-    scene.cameras = read_cameras(root, nodes, scene.origin, warnings);
-    scene.lights = read_lights(root, nodes, scene.origin, warnings);
+  std::vector<PlacedNode> nodes;
+  const auto place_cameras_and_lights = [&](const GltfObject& from, Warnings& to) {
+    scene.cameras = read_cameras(from, nodes, scene.origin, to);
+    scene.lights = read_lights(from, nodes, scene.origin, to);
   };
-  place_cameras_and_lights();  // their faults are told before the library meets them
+  {  // Faults of nodes, cameras and lights are told before buffers are read. Of a pose that
+     // animations change nothing is warned.
+    const GltfObject from = time.seconds ? GltfObject(json, quiet) : root;
+    Warnings& to = time.seconds ? unused : warnings;
+    nodes = place_nodes(from, {}, to);
+    place_cameras_and_lights(from, to);
+  }
 
   Hasher content;
   content.add(std::span<const std::uint8_t>(bytes));
-  const tinygltf::Model model = parse_model(bytes, framing, root, folder, content);
-  build_meshes(model, nodes, scene, warnings);
-  if (scene.origin != V3d(0.0)) place_cameras_and_lights();
+  const file::Model model = read_model(bytes, framing, root, folder, content);
+  Pose pose;
+  if (time.seconds) {
+    pose = pose_at(root, model, *time.seconds, time.animation, warnings);
+    nodes = place_nodes(root, pose, warnings);
+  }
+  add_time(time, content);
+  const Skins skins = pose_skins(root, model, nodes, node_transforms(root, pose));
+  build_meshes(model, nodes, skins, scene, warnings);
+  if (time.seconds || scene.origin != V3d(0.0)) place_cameras_and_lights(root, warnings);
   warn_of_far_cameras(scene, warnings);
   scene.textures = textures.build(model, folder, content);
   scene.content_hash = content.digest();
   if (inputs != nullptr) *inputs = folder.inputs();
-  warn_of_unread_parts(root, warnings);
+  warn_of_unread_parts(root, time, warnings);
   scene.warnings = warnings.take();
   return scene;
 }
@@ -58,9 +86,10 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
 }  // namespace
 }  // namespace gltf
 
-SceneData load_gltf(const std::filesystem::path& file, std::vector<InputFile>* inputs) {
+SceneData load_gltf(const std::filesystem::path& file, std::vector<InputFile>* inputs,
+                    const SceneTime& time) {
   try {
-    return gltf::load(file, inputs);
+    return gltf::load(file, inputs, time);
   } catch (const SceneError& e) {
     throw SceneError(file.string() + ": " + e.what());
   }

@@ -1,34 +1,75 @@
 #include "renderer/gltf/gltf_model.h"
 
+// The library links tinygltf as Debian compiles it, so no source defines its implementation.
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <array>
 #include <deque>
 #include <new>
+#include <utility>
 
 #include "renderer/geometry/scene_data.h"
+#include "renderer/gltf/gltf_compression.h"
+#include "renderer/gltf/gltf_meshopt.h"
 
 namespace lacuna::gltf {
 namespace {
 
-/// The external buffers in the order of the file, which is the order in which tinygltf asks.
+/// The buffers that are files to tinygltf, in the order in which it asks, which is theirs.
 using BufferQueue = std::deque<Bytes>;
 
-BufferQueue read_external_buffers(const GltfObject& root, SceneFolder& folder, Hasher& content) {
+bool has_fallbacks(const GltfObject& root) {
+  const auto buffers = root.objects("buffers");
+  return std::any_of(buffers.begin(), buffers.end(), is_fallback);
+}
+
+Bytes read_external(const GltfObject& buffer, const std::string& uri, std::uint64_t needed,
+                    SceneFolder& folder, Hasher& content) {
+  Bytes bytes = folder.read(uri, buffer.label(), InputRole::buffer);
+  if (bytes.size() < needed) {
+    buffer.fail(in_quotes(uri) + " has " + std::to_string(bytes.size()) + " bytes; byteLength is " +
+                std::to_string(needed));
+  }
+  content.add(std::span<const std::uint8_t>(bytes));
+  bytes.resize(needed);  // a longer file is legal, but tinygltf wants the exact size
+  return bytes;
+}
+
+BufferQueue read_buffers(const Framing& framing, const GltfObject& root, SceneFolder& folder,
+                         Hasher& content) {
   BufferQueue queue;
+  const bool bin_is_a_file = has_fallbacks(root);
   for (const GltfObject& buffer : root.objects("buffers")) {
-    if (!buffer.has("uri")) continue;
-    const std::string uri = buffer.string("uri");
-    refuse_data_uri(buffer, uri);
-    if (tinygltf::IsDataURI(uri)) continue;
-    Bytes bytes = folder.read(uri, buffer.label(), InputRole::buffer);
-    const std::uint64_t needed = buffer.integer("byteLength", 1, bytes.max_size());
-    if (bytes.size() < needed) {
-      buffer.fail("\"" + uri + "\" has " + std::to_string(bytes.size()) + " bytes; byteLength is " +
-                  std::to_string(needed));
+    const std::uint64_t needed = buffer.integer("byteLength", 1, ~std::uint32_t{0});
+    if (is_fallback(buffer)) {
+      queue.emplace_back(needed);
+    } else if (!buffer.has("uri")) {
+      const auto bin = framing.bin();
+      if (bin_is_a_file) queue.emplace_back(bin.begin(), bin.begin() + static_cast<long>(needed));
+    } else {
+      const std::string uri = buffer.string("uri");
+      refuse_data_uri(buffer, uri);
+      if (tinygltf::IsDataURI(uri)) continue;
+      queue.push_back(read_external(buffer, uri, needed, folder, content));
     }
-    content.add(std::span<const std::uint8_t>(bytes));
-    bytes.resize(needed);  // a longer file is legal, but tinygltf wants the exact size
-    queue.push_back(std::move(bytes));
   }
   return queue;
+}
+
+/// The JSON of a file with fallback buffers, which tinygltf refuses: they and the BIN chunk get the
+/// uri of a file.
+std::string json_without_fallbacks(const Framing& framing, const GltfObject& root) {
+  Json json = parse_json(framing.json);
+  std::size_t i = 0;
+  for (const GltfObject& buffer : root.objects("buffers")) {
+    Json& named = json["buffers"][i++];
+    if (is_fallback(buffer) || !buffer.has("uri")) named["uri"] = "queued";
+  }
+  return json.dump();
 }
 
 /// tinygltf never touches the file system: buffers come from the queue, images are left alone. A
@@ -63,19 +104,12 @@ std::string first_line(const std::string& text) {
   return text.substr(0, std::min(text.find('\n'), longest));
 }
 
-}  // namespace
-
-void refuse_data_uri(const GltfObject& place, const std::string& uri) {
-  if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
-    place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
-               "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
-               "image/png or image/jpeg");
-  }
-}
-
+/// Buffers are filled; images keep their encoded bytes only if they came as a data: URI.
 tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
                             const GltfObject& root, SceneFolder& folder, Hasher& content) {
-  BufferQueue queue = read_external_buffers(root, folder, content);
+  BufferQueue queue = read_buffers(framing, root, folder, content);
+  std::string text;
+  if (has_fallbacks(root)) text = json_without_fallbacks(framing, root);
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(callbacks(queue));
   parser.SetImageLoader(keep_encoded, nullptr);
@@ -85,13 +119,14 @@ tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& f
   bool parsed = false;
   try {
     // No base folder: names reach nobody but the callbacks.
-    if (framing.binary) {
+    if (framing.binary && text.empty()) {
       parsed = parser.LoadBinaryFromMemory(&model, &error, &warning, file.data(),
                                            static_cast<unsigned>(file.size()), "");
     } else {
-      parsed = parser.LoadASCIIFromString(&model, &error, &warning,
-                                          reinterpret_cast<const char*>(file.data()),
-                                          static_cast<unsigned>(file.size()), "");
+      const auto* first = text.empty() ? reinterpret_cast<const char*>(file.data()) : text.data();
+      const std::size_t size = text.empty() ? file.size() : text.size();
+      parsed = parser.LoadASCIIFromString(&model, &error, &warning, first,
+                                          static_cast<unsigned>(size), "");
     }
   } catch (const std::bad_alloc&) {
     throw;  // says nothing of the file
@@ -100,6 +135,98 @@ tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& f
     error = e.what();
   }
   if (!parsed) throw SceneError("tinygltf: " + first_line(error));
+  return model;
+}
+
+ElementType element_type(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_VEC2:
+      return ElementType::vec2;
+    case TINYGLTF_TYPE_VEC3:
+      return ElementType::vec3;
+    case TINYGLTF_TYPE_VEC4:
+      return ElementType::vec4;
+    case TINYGLTF_TYPE_MAT2:
+      return ElementType::mat2;
+    case TINYGLTF_TYPE_MAT3:
+      return ElementType::mat3;
+    case TINYGLTF_TYPE_MAT4:
+      return ElementType::mat4;
+    default:
+      return ElementType::scalar;
+  }
+}
+
+file::Sparse translated_sparse(const tinygltf::Accessor& accessor) {
+  const auto& from = accessor.sparse;
+  file::Sparse to;
+  if (!from.isSparse) return to;
+  to.count = static_cast<std::size_t>(from.count);
+  to.indices_view = static_cast<std::size_t>(from.indices.bufferView);
+  to.indices_offset = static_cast<std::size_t>(from.indices.byteOffset);
+  to.indices_component = from.indices.componentType;
+  to.values_view = static_cast<std::size_t>(from.values.bufferView);
+  to.values_offset = static_cast<std::size_t>(from.values.byteOffset);
+  return to;
+}
+
+file::Mesh translated(tinygltf::Mesh& from) {
+  file::Mesh to{.name = std::move(from.name), .primitives = {}};
+  for (tinygltf::Primitive& p : from.primitives) {
+    to.primitives.push_back({.attributes = std::move(p.attributes),
+                             .indices = p.indices,
+                             .material = p.material,
+                             .mode = p.mode,
+                             .targets = std::move(p.targets)});
+  }
+  return to;
+}
+
+file::Model translated(tinygltf::Model from) {
+  file::Model to;
+  for (tinygltf::Buffer& b : from.buffers) to.buffers.push_back(std::move(b.data));
+  for (const tinygltf::BufferView& v : from.bufferViews) {
+    to.views.push_back(
+        {static_cast<std::size_t>(v.buffer), v.byteOffset, v.byteLength, v.byteStride});
+  }
+  for (const tinygltf::Accessor& a : from.accessors) {
+    to.accessors.push_back({.view = a.bufferView,
+                            .offset = a.byteOffset,
+                            .count = a.count,
+                            .component = a.componentType,
+                            .normalized = a.normalized,
+                            .type = element_type(a.type),
+                            .sparse = translated_sparse(a)});
+  }
+  for (tinygltf::Mesh& m : from.meshes) to.meshes.push_back(translated(m));
+  for (tinygltf::Image& i : from.images) to.images.push_back(std::move(i.image));
+  return to;
+}
+
+}  // namespace
+
+std::size_t component_bytes(int component) {
+  if (component == component_s8 || component == component_u8) return 1;
+  return component == component_s16 || component == component_u16 ? 2 : 4;
+}
+
+std::size_t component_count(ElementType type) {
+  constexpr std::array<std::size_t, 7> counts{1, 2, 3, 4, 4, 9, 16};
+  return counts[static_cast<std::size_t>(type)];
+}
+
+void refuse_data_uri(const GltfObject& place, const std::string& uri) {
+  if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
+    place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
+               "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
+               "image/png or image/jpeg");
+  }
+}
+
+file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,
+                       const GltfObject& root, SceneFolder& folder, Hasher& content) {
+  file::Model model = translated(parse_model(file, framing, root, folder, content));
+  decode_meshopt(root, model);
   return model;
 }
 

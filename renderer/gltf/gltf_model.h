@@ -1,12 +1,10 @@
 #pragma once
 
-// The library links tinygltf as Debian compiles it, so no source defines its implementation.
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
-#include <tiny_gltf.h>
-
+#include <cstdint>
+#include <map>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "renderer/gltf/gltf_guard.h"
 #include "renderer/gltf/hasher.h"
@@ -14,11 +12,75 @@
 
 namespace lacuna::gltf {
 
-/// Lets tinygltf parse a file that check_structure() has passed. Buffers are filled; images keep
-/// their encoded bytes only if they came as a data: URI. External buffers are read through `folder`
-/// and enter `content`. Throws SceneError.
-tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
-                            const GltfObject& root, SceneFolder& folder, Hasher& content);
+/// The numbers that glTF writes for the types of components.
+inline constexpr int component_s8 = 5120, component_u8 = 5121, component_s16 = 5122,
+                     component_u16 = 5123, component_u32 = 5125, component_float = 5126;
+
+/// The modes of primitives that are made of triangles.
+inline constexpr int mode_triangles = 4, mode_strip = 5, mode_fan = 6;
+
+enum class ElementType { scalar, vec2, vec3, vec4, mat2, mat3, mat4 };
+
+std::size_t component_bytes(int component);
+std::size_t component_count(ElementType type);
+
+/// The parts of tinygltf's model that are read from, as check_structure() has passed them. Indices
+/// are -1 where the file has none.
+namespace file {
+
+struct BufferView {
+  std::size_t buffer = 0, offset = 0, bytes = 0;
+  std::size_t stride = 0;  ///< 0: that of its elements
+};
+
+struct Sparse {
+  std::size_t count = 0;  ///< 0: nothing is replaced
+  std::size_t indices_view = 0, indices_offset = 0;
+  int indices_component = 0;
+  std::size_t values_view = 0, values_offset = 0;
+};
+
+struct Accessor {
+  int view = -1;
+  std::size_t offset = 0, count = 0;
+  int component = 0;
+  bool normalized = false;
+  ElementType type = ElementType::scalar;
+  Sparse sparse;
+};
+
+/// Accessors by the names of attributes.
+using Attributes = std::map<std::string, int>;
+
+struct Primitive {
+  Attributes attributes;
+  int indices = -1, material = -1, mode = mode_triangles;
+  std::vector<Attributes> targets;
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+struct Model {
+  std::vector<Bytes> buffers;
+  std::vector<BufferView> views;
+  std::vector<Accessor> accessors;
+  std::vector<Mesh> meshes;
+  std::vector<Bytes> images;  ///< encoded; empty but for those that came as a data: URI
+
+  const std::uint8_t* bytes_of(std::size_t view, std::size_t offset = 0) const {
+    return buffers[views[view].buffer].data() + views[view].offset + offset;
+  }
+};
+
+}  // namespace file
+
+/// Lets tinygltf parse a file that check_structure() has passed. External buffers are read through
+/// `folder` and enter `content`; compressed data are decoded. Throws SceneError.
+file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,
+                       const GltfObject& root, SceneFolder& folder, Hasher& content);
 
 /// Throws SceneError for a data: URI of another kind than tinygltf decodes.
 void refuse_data_uri(const GltfObject& place, const std::string& uri);

@@ -12,25 +12,29 @@ namespace {
 constexpr int max_levels = 256;
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-double determinant3(const M44d& m) { return row(m, 0).dot(row(m, 1).cross(row(m, 2))); }
-
 /// The transform of a node, and the same with scales of 0 taken as 1.
 struct LocalTransform {
   M44d exact, turn;
 };
 
-/// glTF stores columns for column vectors, which is what Imath stores as rows for row vectors.
-LocalTransform local_transform(const GltfObject& node) {
-  M44d m;
+const NodePose& pose_of(const Pose& pose, std::size_t node) {
+  static const NodePose unposed;
+  const auto found = pose.find(node);
+  return found == pose.end() ? unposed : found->second;
+}
+
+LocalTransform local_transform(const GltfObject& node, const NodePose& pose) {
   if (const auto a = node.numbers<16>("matrix", Limits{})) {
-    for (std::size_t i = 0; i < 16; ++i) {
-      if (i % 4 < 3) m[static_cast<int>(i / 4)][i % 4] = (*a)[i];  // check_fourth_row()
-    }
+    const M44d m = matrix_of(*a);
     return {m, m};
   }
-  const auto scale = node.numbers<3>("scale", Limits{}).value_or(std::array{1.0, 1.0, 1.0});
-  const auto shift = node.numbers<3>("translation", Limits{}).value_or(std::array{0.0, 0.0, 0.0});
-  auto q = node.numbers<4>("rotation", Limits{}).value_or(std::array{0.0, 0.0, 0.0, 1.0});
+  const auto property = [&]<std::size_t N>(const std::optional<std::array<double, N>>& posed,
+                                           const char* key, const std::array<double, N>& fallback) {
+    return posed ? *posed : node.numbers<N>(key, Limits{}).value_or(fallback);
+  };
+  const auto scale = property(pose.scale, "scale", {1, 1, 1});
+  const auto shift = property(pose.translation, "translation", {0, 0, 0});
+  auto q = property(pose.rotation, "rotation", {0, 0, 0, 1});
   const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
   for (double& component : q) component /= norm;
   const auto [x, y, z, w] = q;
@@ -39,7 +43,7 @@ LocalTransform local_transform(const GltfObject& node) {
       {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
       {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)},
   };
-  M44d turn;
+  M44d m, turn;
   for (int i = 0; i < 3; ++i) {
     const double s = scale[static_cast<std::size_t>(i)];
     for (int j = 0; j < 3; ++j) {
@@ -49,14 +53,6 @@ LocalTransform local_transform(const GltfObject& node) {
     turn[3][i] = m[3][i] = shift[static_cast<std::size_t>(i)];
   }
   return {m, turn};
-}
-
-/// Finite, with axes whose lengths are, too.
-bool all_finite(const M44d& m) {
-  for (int i = 0; i < 4; ++i) {
-    if (!std::isfinite(row(m, i).length())) return false;
-  }
-  return true;
 }
 
 /// The direction of `a`, whatever its length; 0 if it has none.
@@ -82,8 +78,13 @@ bool carries_something(const GltfObject& node) {
   return node.has("mesh") || node.has("camera") || (light && light->has("light"));
 }
 
-/// Every node has at most one parent and no node is its own ancestor. Returns the parents.
-std::vector<std::size_t> check_forest(const std::vector<GltfObject>& nodes) {
+struct Forest {
+  std::vector<std::size_t> parents;  ///< `none` for a root
+  std::vector<std::size_t> order;    ///< all nodes, each after its parent
+};
+
+/// Every node has at most one parent and no node is its own ancestor.
+Forest check_forest(const std::vector<GltfObject>& nodes) {
   std::vector<std::size_t> parents(nodes.size(), none);
   std::vector<std::vector<std::size_t>> children(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -111,7 +112,17 @@ std::vector<std::size_t> check_forest(const std::vector<GltfObject>& nodes) {
     const auto lost = std::find(seen.begin(), seen.end(), false) - seen.begin();
     nodes[static_cast<std::size_t>(lost)].fail("is its own ancestor, or lies below a node that is");
   }
-  return parents;
+  return {std::move(parents), std::move(reached)};
+}
+
+/// The weights of the morph targets of a node's mesh: those of the pose, of the node or of the
+/// mesh.
+std::vector<double> morph_weights(const GltfObject& node, const std::vector<GltfObject>& meshes,
+                                  const NodePose& pose) {
+  const auto mesh = node.index("mesh", meshes.size(), "meshes");
+  if (!mesh) return {};
+  if (pose.weights) return *pose.weights;
+  return (node.has("weights") ? node : meshes[*mesh]).number_list("weights", any_float);
 }
 
 std::vector<std::size_t> scene_roots(const GltfObject& root, const std::vector<GltfObject>& nodes,
@@ -167,9 +178,22 @@ void warn_of_rank(const GltfObject& node, int rank, const GltfObject& flattening
 
 }  // namespace
 
-std::vector<PlacedNode> place_nodes(const GltfObject& root, Warnings& warnings) {
+std::vector<M44d> node_transforms(const GltfObject& root, const Pose& pose) {
   const auto nodes = root.objects("nodes");
-  const auto parents = check_forest(nodes);
+  const Forest forest = check_forest(nodes);
+  std::vector<M44d> out(nodes.size());
+  for (const std::size_t i : forest.order) {
+    out[i] = local_transform(nodes[i], pose_of(pose, i)).exact;
+    if (forest.parents[i] != none) out[i] *= out[forest.parents[i]];
+  }
+  return out;
+}
+
+std::vector<PlacedNode> place_nodes(const GltfObject& root, const Pose& pose, Warnings& warnings) {
+  const auto nodes = root.objects("nodes");
+  const auto meshes = root.objects("meshes");
+  const auto skins = root.array_size("skins");
+  const auto parents = check_forest(nodes).parents;
   const auto roots = scene_roots(root, nodes, parents);
 
   std::vector<PlacedNode> placed;
@@ -183,7 +207,7 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root, Warnings& warnings) 
     if (visit.level > max_levels) {
       node.fail("lies more than " + std::to_string(max_levels) + " levels deep");
     }
-    const LocalTransform local = local_transform(node);
+    const LocalTransform local = local_transform(node, pose_of(pose, visit.node));
     visit.to_world = local.exact * visit.to_world;
     visit.turn = local.turn * visit.turn;
     if (const int own = rank(visit.to_world); own < visit.rank) {
@@ -194,10 +218,13 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root, Warnings& warnings) 
       if (!all_finite(visit.to_world) || !all_finite(visit.turn)) {
         node.fail("its transform, with those of its parents, is too large or not finite");
       }
-      if (visit.rank < 3) warn_of_rank(node, visit.rank, nodes[visit.flat_at], warnings);
+      std::optional<std::size_t> skin;
+      if (node.has("mesh")) skin = node.index("skin", skins, "skins");
+      if (visit.rank < 3 && !skin) warn_of_rank(node, visit.rank, nodes[visit.flat_at], warnings);
       const bool can_turn = rank(visit.turn) == 3;
       placed.push_back({node, visit.to_world, visit.rank, visit.turn, can_turn,
-                        can_turn && determinant3(visit.turn) < 0});
+                        can_turn && determinant3(visit.turn) < 0,
+                        morph_weights(node, meshes, pose_of(pose, visit.node)), skin});
     }
     const auto children = node.indices("children", nodes.size(), "nodes");
     for (auto it = children.rbegin(); it != children.rend(); ++it) {

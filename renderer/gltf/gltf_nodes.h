@@ -2,13 +2,11 @@
 
 #include <vector>
 
-#include "renderer/core/vec.h"
 #include "renderer/gltf/gltf_object.h"
+#include "renderer/gltf/gltf_pose.h"
+#include "renderer/gltf/gltf_transforms.h"
 
 namespace lacuna::gltf {
-
-/// Row `i` in [0, 3] of a transform without its last column.
-inline V3d row(const M44d& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
 
 /// A node with a mesh, a camera or a light.
 struct PlacedNode {
@@ -19,14 +17,19 @@ struct PlacedNode {
   int rank = 3;
   /// As to_world, with scales of 0 taken as 1: what turns cameras and lights, which have no size.
   M44d turn;
-  bool can_turn = true;   ///< `turn` can be inverted
-  bool mirrored = false;  ///< a left-handed `turn`
+  bool can_turn = true;             ///< `turn` can be inverted
+  bool mirrored = false;            ///< a left-handed `turn`
+  std::vector<double> weights;      ///< of the mesh's morph targets; none: 0
+  std::optional<std::size_t> skin;  ///< of a node with a mesh
 };
 
 /// The nodes with a mesh, camera or light in the default scene, in depth-first order. A file
 /// without a default scene: its first scene; a file without scenes: all root nodes. Warns of scales
 /// of 0. Throws SceneError on a cycle, on a node with two parents, on more than 256 levels, and if
 /// the transform of such a node overflows.
-std::vector<PlacedNode> place_nodes(const GltfObject& root, Warnings& warnings);
+std::vector<PlacedNode> place_nodes(const GltfObject& root, const Pose& pose, Warnings& warnings);
+
+/// The transforms of all nodes of a file that place_nodes() reads, inside its scene or not.
+std::vector<M44d> node_transforms(const GltfObject& root, const Pose& pose);
 
 }  // namespace lacuna::gltf

@@ -124,6 +124,12 @@ double GltfObject::read(const JsonCursor& found, std::string_view key,
   return nearest;
 }
 
+std::vector<double> GltfObject::number_list(std::string_view key, const Limits& allowed) const {
+  std::vector<double> out;
+  for (const JsonCursor& item : elements(key)) out.push_back(read(item, key, allowed));
+  return out;
+}
+
 std::optional<std::array<double, 3>> GltfObject::light_colour(std::string_view key) const {
   const auto colour = numbers<3>(key, non_negative);
   if (colour && *std::max_element(colour->begin(), colour->end()) > 1) {

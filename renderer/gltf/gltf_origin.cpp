@@ -7,21 +7,20 @@
 #include <limits>
 
 #include "renderer/gltf/gltf_primitives.h"
+#include "renderer/gltf/gltf_vertices.h"
 
 namespace lacuna::gltf {
 namespace {
 
-/// Of the finite vertices that the triangles of a primitive use, in its own coordinates.
-Bounds local_bounds(const Source& source) {
-  const AccessorView positions =
-      source.view("POSITION", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+/// Of the finite vertices that the triangles of a primitive use: in the mesh's coordinates, or in
+/// the world's.
+Bounds posed_bounds(const Source& source, const Vertices& vertices, bool in_world) {
   Bounds box;
   const auto triangles =
-      assemble_triangles(source.model, source.primitive(), positions.size(), false, source.place());
+      assemble_triangles(source.model, source.primitive(), vertices.size(), false, source.place());
   for (const Triangle& t : triangles) {
     for (const std::uint32_t v : t) {
-      const auto p = positions.floats<3>(v);
-      if (const V3f x(p[0], p[1], p[2]); is_finite(x)) box.add(x);
+      if (const V3f x(in_world ? vertices.world(v) : vertices.local(v)); is_finite(x)) box.add(x);
     }
   }
   return box;
@@ -42,7 +41,8 @@ void add_corners(const Bounds& local, const M44d& to_world, Bounds& box) {
   }
 }
 
-Bounds scene_bounds(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+Bounds scene_bounds(const file::Model& model, const std::vector<PlacedNode>& nodes,
+                    const Skins& skins) {
   std::vector<std::vector<std::optional<Bounds>>> local(model.meshes.size());
   Bounds box;
   for (const PlacedNode& node : nodes) {
@@ -50,10 +50,17 @@ Bounds scene_bounds(const tinygltf::Model& model, const std::vector<PlacedNode>&
     if (!mesh) continue;
     local[*mesh].resize(model.meshes[*mesh].primitives.size());
     for (std::size_t i = 0; i < local[*mesh].size(); ++i) {
-      const Source source{model, *mesh, i, node};
-      if (!is_drawn(source.primitive())) continue;
+      const Source source{model, *mesh, i, node, skins};
+      if (!is_drawn(source.primitive()) || source.hidden()) continue;
+      const Vertices vertices(source);
+      if (!vertices.rigid()) {
+        if (const Bounds posed = posed_bounds(source, vertices, true); !empty(posed)) {
+          add_corners(posed, M44d(), box);
+        }
+        continue;
+      }
       auto& own = local[*mesh][i];
-      if (!own) own = local_bounds(source);
+      if (!own) own = posed_bounds(source, vertices, false);
       if (!empty(*own)) add_corners(*own, node.to_world, box);
     }
   }
@@ -66,9 +73,10 @@ constexpr double too_far = 0x1p14;
 
 }  // namespace
 
-V3d scene_origin(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+V3d scene_origin(const file::Model& model, const std::vector<PlacedNode>& nodes,
+                 const Skins& skins) {
   constexpr double far = 32;
-  const Bounds box = scene_bounds(model, nodes);
+  const Bounds box = scene_bounds(model, nodes, skins);
   const double side = longest(box.size());
   const V3d centre = (box.low + box.high) / 2;
   const double distance = longest({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});

@@ -5,6 +5,7 @@
 #include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_model.h"
 #include "renderer/gltf/gltf_nodes.h"
+#include "renderer/gltf/gltf_pose.h"
 #include "renderer/gltf/gltf_warnings.h"
 
 namespace lacuna::gltf {
@@ -14,9 +15,10 @@ namespace lacuna::gltf {
 /// result is 0, and no bit changes, unless the centre of the scene's bounding box is further than
 /// 32 times the box's longest side from 0 along some axis. Then it is that centre, rounded to a
 /// multiple of a power of two between 1/2 and 1 times that side, so that the subtraction itself
-/// rounds nothing. The box bounds the transformed boxes of all placed primitives, over the vertices
-/// that triangles use.
-V3d scene_origin(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes);
+/// rounds nothing. The box bounds all vertices that triangles use: by the transformed boxes of
+/// primitives, unless joints or morph targets move them.
+V3d scene_origin(const file::Model& model, const std::vector<PlacedNode>& nodes,
+                 const Skins& skins);
 
 /// Warns of meshes that are too small for the size of their coordinates: those for which
 /// is_far_for_its_size() holds in the scene, and `coarse` meshes for which it holds in the file,

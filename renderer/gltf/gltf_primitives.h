@@ -3,30 +3,34 @@
 #include <optional>
 #include <string>
 
+#include "renderer/core/scene_error.h"
 #include "renderer/gltf/gltf_accessors.h"
 #include "renderer/gltf/gltf_model.h"
 #include "renderer/gltf/gltf_nodes.h"
+#include "renderer/gltf/gltf_pose.h"
 #include "renderer/gltf/gltf_triangles.h"
 
 namespace lacuna::gltf {
 
-inline bool is_drawn(const tinygltf::Primitive& primitive) {
+inline bool is_drawn(const file::Primitive& primitive) {
   return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
 }
 
-/// The index of a node's mesh; none if it has no mesh, or its scale leaves nothing of it.
-inline std::optional<std::size_t> mesh_of(const tinygltf::Model& model, const PlacedNode& node) {
-  if (node.rank < 2) return std::nullopt;
+/// The index of a node's mesh; none if it has no mesh, or its scale leaves nothing of it. A skin
+/// places a mesh by its joints alone.
+inline std::optional<std::size_t> mesh_of(const file::Model& model, const PlacedNode& node) {
+  if (node.rank < 2 && !node.skin) return std::nullopt;
   return node.place.index("mesh", model.meshes.size(), "meshes");
 }
 
 /// An instance of a primitive: the primitive and the node that places it.
 struct Source {
-  const tinygltf::Model& model;
+  const file::Model& model;
   std::size_t mesh, index;
   const PlacedNode& node;
+  const Skins& skins;
 
-  const tinygltf::Primitive& primitive() const { return model.meshes[mesh].primitives[index]; }
+  const file::Primitive& primitive() const { return model.meshes[mesh].primitives[index]; }
   /// Names the instance in errors.
   std::string place() const {
     return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(index) + "] under " +
@@ -38,10 +42,13 @@ struct Source {
     return it == primitive().attributes.end() ? -1 : it->second;
   }
   /// The elements of an attribute, as many as POSITION has.
-  AccessorView view(const std::string& name, int type,
-                    std::initializer_list<int> components) const {
+  AccessorView view(const std::string& name, ElementType type, Components components) const {
+    return view_of(attribute(name), name, type, components);
+  }
+  AccessorView view_of(int accessor, const std::string& name, ElementType type,
+                       Components components) const {
     const std::string use = name + " of " + place();
-    AccessorView out(model, attribute(name), type, components, use);
+    AccessorView out(model, accessor, type, components, use);
     const auto vertices =
         model.accessors[static_cast<std::size_t>(primitive().attributes.at("POSITION"))].count;
     if (out.size() != vertices) {
@@ -50,6 +57,12 @@ struct Source {
     }
     return out;
   }
+  /// Whether joints place the vertices, and not the node.
+  bool skinned() const {
+    return node.skin && attribute("JOINTS_0") >= 0 && attribute("WEIGHTS_0") >= 0;
+  }
+  /// Whether nothing is left of it under a node of scale 0.
+  bool hidden() const { return node.rank < 2 && !skinned(); }
 };
 
 }  // namespace lacuna::gltf

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderer/gltf/gltf_compression.h"
 #include "renderer/gltf/gltf_guard.h"
 
 namespace lacuna::gltf {
@@ -10,9 +11,10 @@ namespace {
 
 constexpr std::uint64_t max_bytes = (std::uint64_t{1} << 32) - 1;
 
-constexpr std::array<std::string_view, 6> supported_extensions{
-    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_texture_transform"};
+constexpr auto supported_extensions = std::to_array<std::string_view>(
+    {meshopt_extension, "KHR_lights_punctual", "KHR_materials_emissive_strength",
+     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
+     "KHR_mesh_quantization", "KHR_texture_transform"});
 
 struct Sizes {
   explicit Sizes(const GltfObject& root)
@@ -49,8 +51,8 @@ void check_asset(const GltfObject& root) {
   }
 }
 
-/// Refuses what is only there in the form of an extension, without the fallback that glTF itself
-/// reads.
+/// Refuses what is only there in the form of an extension that is not supported, without the
+/// fallback that glTF itself reads.
 void refuse_compressed(const GltfObject& place) {
   const auto extensions = place.object("extensions");
   if (!extensions) return;
@@ -67,10 +69,10 @@ void check_buffers(const GltfObject& root, const Framing& framing) {
     const std::uint64_t bytes = buffer.integer("byteLength", 1, max_bytes);
     if (buffer.has("uri")) {
       buffer.string("uri");
-    } else if (!framing.binary || i != 0) {
+    } else if (!is_fallback(buffer) && (!framing.binary || i != 0)) {
       refuse_compressed(buffer);
       buffer.fail("uri is missing; only the first buffer of a GLB has none");
-    } else if (bytes > framing.bin_bytes) {
+    } else if (!is_fallback(buffer) && bytes > framing.bin_bytes) {
       buffer.fail("byteLength is " + std::to_string(bytes) + "; the BIN chunk has " +
                   std::to_string(framing.bin_bytes) + " bytes");
     }
@@ -122,6 +124,34 @@ std::uint64_t element_bytes(const GltfObject& accessor) {
   return bytes->second * count->second;
 }
 
+/// `count` tightly packed elements of a bufferView.
+void check_packed(const GltfObject& part, const std::vector<GltfObject>& views, std::uint64_t count,
+                  std::uint64_t element) {
+  const auto view = part.index("bufferView", views.size(), "bufferViews");
+  if (!view) part.fail("bufferView is missing");
+  const std::uint64_t offset = part.integer("byteOffset", 0, 0, max_bytes);
+  const std::uint64_t held = views[*view].integer("byteLength", 1, max_bytes);
+  if (const std::uint64_t end = offset + count * element; end > held) {
+    part.fail(std::to_string(count) + " elements end at byte " + std::to_string(end) +
+              " of bufferViews[" + std::to_string(*view) + "], which has " + std::to_string(held));
+  }
+}
+
+/// That its indices are below `elements`, and rising, is checked where they are read.
+void check_sparse(const GltfObject& sparse, const std::vector<GltfObject>& views,
+                  std::uint64_t elements, std::uint64_t element) {
+  const std::uint64_t count = sparse.integer("count", 1, elements);
+  const auto indices = sparse.object("indices");
+  const auto values = sparse.object("values");
+  if (!indices || !values) sparse.fail("indices or values is missing");
+  const std::uint64_t component = indices->integer("componentType", 5121, 5125);
+  if (component != 5121 && component != 5123 && component != 5125) {
+    indices->refuse("componentType", "5121, 5123 or 5125");
+  }
+  check_packed(*indices, views, count, component == 5121 ? 1 : component == 5123 ? 2 : 4);
+  check_packed(*values, views, count, element);
+}
+
 void check_accessors(const GltfObject& root, const Sizes& sizes) {
   const auto views = root.objects("bufferViews");
   for (const GltfObject& accessor : root.objects("accessors")) {
@@ -129,7 +159,9 @@ void check_accessors(const GltfObject& root, const Sizes& sizes) {
     const std::uint64_t count = accessor.integer("count", 1, max_bytes);
     const std::uint64_t offset = accessor.integer("byteOffset", 0, 0, max_bytes);
     accessor.boolean("normalized", false);
-    accessor.object("sparse");
+    if (const auto sparse = accessor.object("sparse")) {
+      check_sparse(*sparse, views, count, element);
+    }
     const auto view = accessor.index("bufferView", sizes.buffer_views, "bufferViews");
     if (!view) continue;
     const std::uint64_t stride = views[*view].integer("byteStride", element, 4, 252);
@@ -277,6 +309,7 @@ void check_structure(const GltfObject& root, const Framing& framing) {
   check_accessors(root, sizes);
   check_images(root, sizes);
   check_meshes(root, sizes);
+  check_compression(root);
   check_nodes(root, sizes);
 }
 

@@ -7,11 +7,11 @@ namespace lacuna::gltf {
 namespace {
 
 Texture::Wrap wrap_mode(const GltfObject* sampler, const char* key) {
-  constexpr std::uint64_t repeat = TINYGLTF_TEXTURE_WRAP_REPEAT;
+  constexpr std::uint64_t repeat = 10497;
   switch (sampler == nullptr ? repeat : sampler->integer(key, repeat, 0, 65535)) {
-    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+    case 33071:
       return Texture::Wrap::clamp;
-    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+    case 33648:
       return Texture::Wrap::mirrored;
     default:
       return Texture::Wrap::repeat;
@@ -24,17 +24,16 @@ V2f to_v2f(const std::array<double, 2>& a) {
 
 constexpr std::uint64_t last_uv_set = 1;
 
-Bytes encoded_bytes(const GltfObject& image, const tinygltf::Image& parsed,
-                    const tinygltf::Model& model, SceneFolder& folder) {
-  if (parsed.bufferView >= 0) {
-    const auto& view = model.bufferViews[static_cast<std::size_t>(parsed.bufferView)];
-    const auto& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
-    const auto* first = data.data() + view.byteOffset;
-    return {first, first + view.byteLength};
+Bytes encoded_bytes(const GltfObject& image, const Bytes& inside, const file::Model& model,
+                    SceneFolder& folder) {
+  if (const auto view = image.index("bufferView", model.views.size(), "bufferViews")) {
+    const auto* first = model.bytes_of(*view);
+    return {first, first + model.views[*view].bytes};
   }
-  if (!parsed.image.empty()) return parsed.image;
-  refuse_data_uri(image, image.string("uri"));
-  return folder.read(image.string("uri"), image.label(), InputRole::texture);
+  if (!inside.empty()) return inside;
+  const std::string uri = image.string("uri");
+  refuse_data_uri(image, uri);
+  return folder.read(uri, image.label(), InputRole::texture);
 }
 
 }  // namespace
@@ -75,7 +74,7 @@ int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
   }
   const auto sampler = texture.index("sampler", samplers_.size(), "samplers");
   const GltfObject* used = sampler ? &samplers_[*sampler] : nullptr;
-  constexpr std::uint64_t nearest = TINYGLTF_TEXTURE_FILTER_NEAREST;
+  constexpr std::uint64_t nearest = 9728;
   if (used != nullptr && used->has("magFilter") &&
       used->integer("magFilter", 0, 65535) == nearest) {
     warnings_.once("samplers with magFilter NEAREST are read with bilinear interpolation");
@@ -87,7 +86,7 @@ int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
   return static_cast<int>(index);
 }
 
-std::vector<std::unique_ptr<Texture>> TextureTable::build(const tinygltf::Model& model,
+std::vector<std::unique_ptr<Texture>> TextureTable::build(const file::Model& model,
                                                           SceneFolder& folder, Hasher& content,
                                                           std::uint64_t most_bytes) const {
   std::vector<std::unique_ptr<Texture>> built;

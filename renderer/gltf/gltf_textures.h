@@ -25,7 +25,7 @@ class TextureTable {
 
   /// Creates all textures of the table with their encoded bytes. Throws SceneError if an image is
   /// missing, or if all textures together have more than `most_bytes`, encoded.
-  std::vector<std::unique_ptr<Texture>> build(const tinygltf::Model& model, SceneFolder& folder,
+  std::vector<std::unique_ptr<Texture>> build(const file::Model& model, SceneFolder& folder,
                                               Hasher& content,
                                               std::uint64_t most_bytes = max_encoded_bytes) const;
 

@@ -10,7 +10,7 @@
 namespace lacuna::gltf {
 namespace {
 
-std::size_t corner_count(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+std::size_t corner_count(const file::Model& model, const file::Primitive& primitive) {
   const int accessor =
       primitive.indices >= 0 ? primitive.indices : primitive.attributes.at("POSITION");
   return model.accessors[static_cast<std::size_t>(accessor)].count;
@@ -18,39 +18,34 @@ std::size_t corner_count(const tinygltf::Model& model, const tinygltf::Primitive
 
 /// The corners of triangle `t` as positions in the sequence of indices (glTF 2.0, section 3.7.2.1).
 std::array<std::size_t, 3> corners(int mode, std::size_t t) {
-  if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) return {t, t + 1 + t % 2, t + 2 - t % 2};
-  if (mode == TINYGLTF_MODE_TRIANGLE_FAN) return {t + 1, t + 2, 0};
+  if (mode == mode_strip) return {t, t + 1 + t % 2, t + 2 - t % 2};
+  if (mode == mode_fan) return {t + 1, t + 2, 0};
   return {3 * t, 3 * t + 1, 3 * t + 2};
 }
 
 }  // namespace
 
 bool is_triangle_mode(int mode) {
-  return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
-         mode == TINYGLTF_MODE_TRIANGLE_FAN;
+  return mode == mode_triangles || mode == mode_strip || mode == mode_fan;
 }
 
-std::size_t count_triangles(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+std::size_t count_triangles(const file::Model& model, const file::Primitive& primitive) {
   const std::size_t n = corner_count(model, primitive);
-  if (primitive.mode == TINYGLTF_MODE_TRIANGLES) return n / 3;
+  if (primitive.mode == mode_triangles) return n / 3;
   return n < 3 ? 0 : n - 2;
 }
 
-std::size_t spare_corners(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+std::size_t spare_corners(const file::Model& model, const file::Primitive& primitive) {
   const std::size_t n = corner_count(model, primitive);
-  return primitive.mode == TINYGLTF_MODE_TRIANGLES || n < 3 ? n % 3 : 0;
+  return primitive.mode == mode_triangles || n < 3 ? n % 3 : 0;
 }
 
-std::vector<Triangle> assemble_triangles(const tinygltf::Model& model,
-                                         const tinygltf::Primitive& primitive, std::size_t vertices,
-                                         bool mirrored, const std::string& place) {
+std::vector<Triangle> assemble_triangles(const file::Model& model, const file::Primitive& primitive,
+                                         std::size_t vertices, bool mirrored,
+                                         const std::string& place) {
   std::optional<AccessorView> indices;
   if (primitive.indices >= 0) {
-    indices.emplace(model, primitive.indices, TINYGLTF_TYPE_SCALAR,
-                    std::initializer_list<int>{TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
-                                               TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-                                               TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
-                    "indices");
+    indices.emplace(model, primitive.indices, ElementType::scalar, Components::indices, "indices");
   }
   std::vector<Triangle> triangles(count_triangles(model, primitive));
   for (std::size_t t = 0; t < triangles.size(); ++t) {

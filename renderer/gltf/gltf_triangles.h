@@ -16,15 +16,15 @@ bool is_triangle_mode(int mode);
 
 /// The triangles of a list, strip or fan; every index is below `vertices`. `mirrored` swaps the
 /// winding, so that the front stays the front. Throws SceneError with `place`.
-std::vector<Triangle> assemble_triangles(const tinygltf::Model& model,
-                                         const tinygltf::Primitive& primitive, std::size_t vertices,
-                                         bool mirrored, const std::string& place);
+std::vector<Triangle> assemble_triangles(const file::Model& model, const file::Primitive& primitive,
+                                         std::size_t vertices, bool mirrored,
+                                         const std::string& place);
 
 /// Number of triangles of the primitive, without reading them.
-std::size_t count_triangles(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
+std::size_t count_triangles(const file::Model& model, const file::Primitive& primitive);
 
 /// Corners at the end of the primitive that make no whole triangle.
-std::size_t spare_corners(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
+std::size_t spare_corners(const file::Model& model, const file::Primitive& primitive);
 
 /// Renumbers `triangles` to the vertices they use, in the old order; returns the old numbers.
 std::vector<std::uint32_t> compact(std::vector<Triangle>& triangles, std::size_t vertices);

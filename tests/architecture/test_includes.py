@@ -69,7 +69,8 @@ class Libraries(unittest.TestCase):
 
     DOORS = {"httplib.h": {"server/http/http.cpp", "server/http/answer_writer.cpp"},
              "OpenImageIO/": {"renderer/images/module/openimageio.cpp"},
-             "embree3/": {"renderer/geometry/rays.cpp"}, "tiny_gltf.h": {"renderer/gltf/gltf_model.h"},
+             "embree3/": {"renderer/geometry/rays.cpp"}, "tiny_gltf.h": {"renderer/gltf/gltf_model.cpp"},
+             "meshoptimizer.h": {"renderer/gltf/gltf_meshopt.cpp"},
              "boost/": {"jobs/sweep/distributions.cpp"}}
 
     def test_no_other_source_includes_them(self):

@@ -1,4 +1,5 @@
-"""Makes the seeds of tests/fuzz/corpus that are not text: small pictures and a scene of every kind that is read."""
+"""Makes the seeds of tests/fuzz/corpus that are not text: small pictures and a scene of every kind that is read. Its
+glb/meshopt.glb is a scene of tests/renderer/gltf/meshopt_test.cpp, with a camera."""
 
 import base64
 import json
@@ -119,25 +120,68 @@ def scene(buffer):
             "extensions": {"KHR_lights_punctual": {"lights": lights}}}
 
 
-def scenes():
-    buffer = Buffer()
-    content = scene(buffer)
-    folder = CORPUS / "glb"
-    folder.mkdir(parents=True, exist_ok=True)
+def posed_scene(buffer):
+    """A triangle of shorts with a sparse morph target, on a joint that an animation moves."""
+    positions = buffer.accessor(buffer.view(struct.pack("<12h", 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0, 0), byteStride=8), 5122,
+                                "VEC3", 3)
+    where = buffer.view(struct.pack("<H", 2))
+    moved = buffer.view(struct.pack("<3f", 0, 1, 1))
+    target = buffer.accessor(where, 5126, "VEC3", 3)
+    del buffer.accessors[target]["bufferView"]
+    buffer.accessors[target]["sparse"] = {"count": 1, "indices": {"bufferView": where, "componentType": 5123},
+                                          "values": {"bufferView": moved}}
+    joints = buffer.accessor(buffer.view(bytes(12)), 5121, "VEC4", 3)
+    weights = buffer.accessor(buffer.view(b"\xff\0\0\0" * 3), 5121, "VEC4", 3, normalized=True)
+    identity = buffer.accessor(buffer.view(struct.pack("<16f", *[float(i % 5 == 0) for i in range(16)])), 5126, "MAT4", 1)
+    times = buffer.accessor(buffer.view(struct.pack("<2f", 0, 1)), 5126, "SCALAR", 2)
+    turns = buffer.accessor(buffer.view(struct.pack("<8f", 0, 0, 0, 1, 0, 0, .6, .8)), 5126, "VEC4", 2)
+    curve = buffer.accessor(buffer.view(struct.pack("<18f", *range(18))), 5126, "VEC3", 6)
+    steps = buffer.accessor(buffer.view(struct.pack("<2f", 0, 1)), 5126, "SCALAR", 2)
+    channels = [{"sampler": i, "target": {"node": node, "path": path}}
+                for i, (node, path) in enumerate(((1, "rotation"), (1, "translation"), (0, "weights")))]
+    samplers = [{"input": times, "output": turns}, {"input": times, "output": curve, "interpolation": "CUBICSPLINE"},
+                {"input": times, "output": steps, "interpolation": "STEP"}]
+    attributes = {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}
+    return {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2]}],
+            "nodes": [{"mesh": 0, "skin": 0, "weights": [.5]}, {"scale": [.1, .1, .1]},
+                      {"camera": 0, "translation": [.3, .3, 3]}],
+            "meshes": [{"primitives": [{"attributes": attributes, "targets": [{"POSITION": target}]}]}],
+            "skins": [{"joints": [1], "inverseBindMatrices": identity}],
+            "animations": [{"channels": channels, "samplers": samplers}],
+            "accessors": buffer.accessors, "bufferViews": buffer.views,
+            "cameras": [{"type": "perspective", "perspective": {"yfov": .8, "znear": .01}}]}
+
+
+def write_glb(name, content, buffer):
     content["buffers"] = [{"byteLength": len(buffer.bytes)}]
     text = json.dumps(content, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     binary = bytes(buffer.bytes) + bytes(-len(buffer.bytes) % 4)
-    (folder / "everything.glb").write_bytes(
+    folder = CORPUS / "glb"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(
         struct.pack("<5I", 0x46546C67, 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text
         + struct.pack("<2I", len(binary), 0x004E4942) + binary)
+    return binary
+
+
+def posed():
+    buffer = Buffer()
+    write_glb("posed.glb", posed_scene(buffer), buffer)
+
+
+def scenes():
+    buffer = Buffer()
+    content = scene(buffer)
+    binary = write_glb("everything.glb", content, buffer)
     uri = "data:application/octet-stream;base64," + base64.b64encode(binary).decode()
     content["buffers"] = [{"byteLength": len(binary), "uri": uri}]
     content["images"] = [{"uri": "data:image/png;base64,"
                           + base64.b64encode((CORPUS / "texture/rgba.png").read_bytes()).decode()}]
-    (folder / "everything.gltf").write_text(json.dumps(content, separators=(",", ":")))
+    (CORPUS / "glb/everything.gltf").write_text(json.dumps(content, separators=(",", ":")))
 
 
 float_images()
 textures()
 scenes()
+posed()

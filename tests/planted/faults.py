@@ -256,6 +256,13 @@ FAULTS = [
           "constexpr double far = 32;", "constexpr double far = 1e300;"),
     Fault("lamps are there twice", "renderer/gltf/gltf_duplicates.cpp",
           "if (found == end) {", "if (found == end || merged == 0) {"),
+    Fault("skins keep their node's transform", "renderer/gltf/gltf_vertices.cpp",
+          "return local(i) * (skin_ ? skin_->to_world(i) : source_.node.to_world);",
+          "return local(i) * (skin_ ? skin_->to_world(i) * source_.node.to_world : source_.node.to_world);"),
+    Fault("rotations go the long way", "renderer/gltf/gltf_keyframes.cpp",
+          "if (cosine < 0) {", "if (cosine > 0) {"),
+    Fault("sparse values stand half as far apart", "renderer/gltf/gltf_accessors.h",
+          "return sparse_.values() + at * element_bytes_;", "return sparse_.values() + at * element_bytes_ / 2;"),
     # Resampling.
     Fault("probabilities are not normalised", "renderer/core/alias_table.cpp",
           "static_cast<float>(draws[i] * 0x1p-64)", "static_cast<float>(draws[i] * 0x1p-63)"),

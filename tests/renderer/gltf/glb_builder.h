@@ -22,6 +22,10 @@ using Json = nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
+/// Component types of glTF.
+inline constexpr int component_s8 = 5120, component_u8 = 5121, component_s16 = 5122,
+                     component_u16 = 5123, component_u32 = 5125, component_float = 5126;
+
 /// Puts a small GLB together. Each add_ function returns the index of what it added; `json` and
 /// `bin` may be changed at will before glb() or gltf().
 class GlbBuilder {
@@ -54,7 +58,6 @@ class GlbBuilder {
   std::size_t add_mesh(const std::vector<V3f>& positions, const Triangles& triangles,
                        int material = -1, const std::vector<V3f>& normals = {},
                        const std::vector<V2f>& uvs = {}) {
-    constexpr int component_float = 5126, component_u32 = 5125;
     std::vector<std::uint32_t> indices;
     for (const auto& t : triangles) indices.insert(indices.end(), t.begin(), t.end());
     Json primitive;

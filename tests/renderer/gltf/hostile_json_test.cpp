@@ -94,14 +94,13 @@ std::vector<HostileCase> structure_cases() {
           {"accessors[0]: componentType: found number 5124"}),
       set("TypeUnknown", "/accessors/0/type", "VEC9",
           {"accessors[0]: type: found string \"VEC9\""}),
-      set("NoBufferView", "/accessors/0", {{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
-          {"accessors[0]", "no bufferView"}),
-      set("Sparse", "/accessors/0/sparse",
-          {{"count", 1},
-           {"indices", {{"bufferView", 1}, {"componentType", 5125}}},
-           {"values", {{"bufferView", 0}}}},
-          {"accessors[0]", "sparse"}),
-      set("PositionsAsShorts", "/accessors/0/componentType", 5123,
+      set("NothingButZeros", "/accessors/0",
+          {{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
+          {"the scene has no triangles (dropped: 1 of zero area"}),
+      set("ZerosWithoutEnd", "/accessors/0",
+          {{"componentType", 5126}, {"count", 4000000000}, {"type", "VEC3"}},
+          {"accessors[0]: count: found number 4000000000; allowed: at most 16777216 without"}),
+      set("PositionsAsIntegers", "/accessors/0/componentType", 5125,
           {"accessors[0], used as POSITION of meshes[0].primitives[0]"}),
       set("IndicesAsFloats", "/accessors/1/componentType", 5126, {"accessors[1], used as indices"}),
       set("NoPrimitives", "/meshes/0/primitives", Json::array(), {"meshes[0]: primitives"}),
@@ -145,15 +144,14 @@ std::vector<HostileCase> structure_cases() {
       set("IndicesWithoutData", "/accessors/1",
           {{"componentType", 5125}, {"count", 3}, {"type", "SCALAR"}},
           {"accessors[1]: used as indices of triangles: it has no bufferView"}),
-      {"MeshoptWithoutFallback",
+      {"BufferWithoutFallback",
        [](GlbBuilder& b) {
          b.json["buffers"] = {
              {{"byteLength", b.bin.size()}},
-             {{"byteLength", 48},
-              {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+             {{"byteLength", 48}, {"extensions", {{"ACME_compression", {{"fallback", true}}}}}}};
          b.json["bufferViews"][0]["buffer"] = 1;
        },
-       {"buffers[1]: its data come by extension EXT_meshopt_compression, which is not supported"}},
+       {"buffers[1]: its data come by extension ACME_compression, which is not supported"}},
       set("NoNodes", "/scenes/0/nodes", Json::array(), {"the scene has no triangles"}),
   };
 }

@@ -245,7 +245,7 @@ TEST(Images, OneThatIsNotUsedMayBeOfAnyKind) {
   }
 }
 
-TEST(Compression, WithAFallbackItIsLeftOut) {
+TEST(Compression, WhereTheFallbackHasDataTheyAreRead) {
   GlbBuilder b = test::triangle_scene();
   b.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
       {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
@@ -253,6 +253,7 @@ TEST(Compression, WithAFallbackItIsLeftOut) {
   b.json["extensionsUsed"] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
   const SceneData scene = load(b);
   EXPECT_EQ(scene.triangle_count(), 1U);
+  EXPECT_EQ(scene.warnings.size(), 1U);
   expect_warning(scene, "KHR_draco_mesh_compression is not supported");
 }
 
