@@ -229,11 +229,18 @@ test("without room on the disk, jobs wait; with it, they go on", async (t) => {
   const places = folders(t);
   const first = await Service.start(places, ["--disk-floor", "900000T"]);
   const id = await first.post("finish");
-  await new Promise((resolve) => { setTimeout(resolve, 1500); });
+  // A runner looks at the disk before it takes a job, the maintenance thread only once a second.
+  const { obstacle } = await until(async () => {
+    const health = await first.json("/health");
+    return health.status === "waiting" && health;
+  }, "the lack of room is noticed");
+  assert.match(obstacle, /are free on the disk, the floor is/);
   assert.equal((await first.json(`/api/jobs/${id}`)).state.state, "queued");
   const { disk } = await first.json("/api/info");
   assert.ok(disk.free_bytes < disk.floor_bytes);
   await first.stop();
+  assert.equal(first.stored(id).attempts, 0);
+  assert.ok(!fs.existsSync(path.join(first.folder(id), "log.txt")), "no renderer was started");
   const second = await Service.start(places);
   await second.reaches(id, "done");
 });
