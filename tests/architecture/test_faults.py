@@ -7,7 +7,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/planted"))
 
-from faults import FAULTS, Fault  # noqa: E402
+from fault import Fault  # noqa: E402
+from faults import FAULTS  # noqa: E402
 from planted import problems  # noqa: E402
 
 
