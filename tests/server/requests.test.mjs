@@ -165,6 +165,27 @@ test("who has not seen the latest state changes nothing", async (t) => {
   assert.equal((await service.json(`/api/jobs/${id}`)).priority, 4);
 });
 
+test("a cancel, a retry, an extension and a removal are refused after a change that was not seen", async (t) => {
+  const service = await Service.start(folders(t));
+  const running = await service.post("gate never");
+  await service.reaches(running, "running");
+  const id = await service.post("finish");
+  const etag = async () => (await service.fetch(`/api/jobs/${id}`)).headers.get("etag");
+  const old = await etag();
+  const ask = async (method, what, seen, body) => (await service.fetch(`/api/jobs/${id}${what}`, { method,
+    body: body && JSON.stringify(body), headers: { "If-Match": seen, "Content-Type": "application/json" } })).status;
+  const stands = async (state) => assert.equal((await service.json(`/api/jobs/${id}`)).state.state, state);
+  assert.equal((await patch(service, id, { priority: 2 })).status, 200);
+  assert.equal(await ask("POST", "/cancel", old), 412);
+  await stands("queued");
+  assert.equal(await ask("POST", "/cancel", await etag()), 200);
+  assert.equal(await ask("POST", "/retry", old), 412);
+  assert.equal(await ask("POST", "/extend", old, { budget: { seconds: 1000 } }), 412);
+  assert.equal(await ask("DELETE", "", old), 412);
+  await stands("cancelled");
+  assert.equal(await ask("DELETE", "", await etag()), 204);
+});
+
 test("the same key and body make one job, also at once and after a restart", async (t) => {
   const places = folders(t);
   const first = await Service.start(places);
