@@ -19,7 +19,7 @@ FAULTS = [
     Fault("an error that is reached exactly is not reached", "web/curve.js",
           "curve.findLastIndex((p) => p.y > y) + 1", "curve.findLastIndex((p) => p.y >= y) + 1", NUMBERS),
     Fault("render times are compared by their difference", "web/curve.js",
-          "most <= mostApart * least", "most <= mostApart + least", VIEWER),
+          "most <= mostApart * least", "most <= mostApart + least", NUMBERS),
     Fault("jobs of equal names get the same suffix", "web/curve_panel.js",
           'job.id.split("-").pop()', 'job.id.split("-")[0]', PAGE),
     Fault("the slowest job is the fastest", "web/view_compare.js",
