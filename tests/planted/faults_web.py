@@ -3,6 +3,7 @@
 from fault import Fault
 
 NUMBERS = ("tests/web/numbers.test.mjs",)
+DOM = ("tests/web/dom.test.mjs",)
 LIST = ("tests/web/list.test.mjs",)
 PAGE = ("tests/web/page.test.mjs",)
 VIEWER = ("tests/web/viewer.test.mjs",)
@@ -28,13 +29,13 @@ FAULTS = [
           "s.serial * (count - 1) + s.waiting", "s.serial * count - s.waiting", PAGE),
     # Elements, addresses, requests.
     Fault("elements that moved stay where they were", "web/dom.js",
-          "if (kept !== there) old.insertBefore(kept, there);", "if (!there) old.append(kept);", LIST),
+          "if (kept !== there) old.insertBefore(kept, there);", "if (!there) old.append(kept);", DOM),
     Fault("an update takes what is being typed", "web/dom.js",
           'const typed = old === document.activeElement && old.matches("input:not([type=checkbox])");',
-          "const typed = false;", LIST),
-    Fault("addresses have escaped commas", "web/dom.js", '.replaceAll("%2C", ",")', "", SWEEPS),
+          "const typed = false;", DOM),
+    Fault("addresses have escaped commas", "web/dom.js", '.replaceAll("%2C", ",")', "", DOM),
     Fault("a question that is answered by no is a yes", "web/dom.js",
-          'resolve(dialog.returnValue === "yes");', "resolve(true);", LIST + SWEEPS),
+          'resolve(dialog.returnValue === "yes");', "resolve(true);", DOM),
     Fault("a part of a file is a byte too long", "web/api.js",
           "`bytes=${offset}-${offset + bytes - 1}`", "`bytes=${offset}-${offset + bytes}`", VIEWER),
     # The list and a job.
