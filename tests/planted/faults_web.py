@@ -6,8 +6,9 @@ NUMBERS = ("tests/web/numbers.test.mjs",)
 DOM = ("tests/web/dom.test.mjs",)
 LIST = ("tests/web/list.test.mjs",)
 PAGE = ("tests/web/page.test.mjs",)
+PICTURES = ("tests/web/pictures.test.mjs",)
 VIEWER = ("tests/web/viewer.test.mjs",)
-SWEEPS = ("tests/web/sweeps.test.mjs",)
+ANSWERS = ("tests/web/answers.test.mjs",)
 
 FAULTS = [
     # Numbers and texts.
@@ -49,22 +50,22 @@ FAULTS = [
           'begin > 0 ? lines.slice(lines.indexOf("\\n") + 1) : lines', "lines", PAGE),
     # Sweeps.
     Fault("a gain that may be 1 is called worse", "web/answers.js",
-          '!gain?.at_least && gain?.high < 1 ? "worse"', '!gain?.at_least && gain?.low < 1 ? "worse"', SWEEPS),
+          '!gain?.at_least && gain?.high < 1 ? "worse"', '!gain?.at_least && gain?.low < 1 ? "worse"', ANSWERS),
     Fault("settings are sorted by their digits", "web/answers.js",
-          'localeCompare(settingText(b), "en", { numeric: true })', 'localeCompare(settingText(b), "en")', SWEEPS),
+          'localeCompare(settingText(b), "en", { numeric: true })', 'localeCompare(settingText(b), "en")', ANSWERS),
     # Pictures.
     Fault("a reference has the picture's scale", "web/errors.js",
-          "r[k] * reference.scale", "r[k] * image.scale", VIEWER),
+          "r[k] * reference.scale", "r[k] * image.scale", PICTURES),
     Fault("a crop has the rows of its own width", "web/pixels.js",
-          "const first = ((y + row) * image.width + x) * n;", "const first = ((y + row) * w + x) * n;", VIEWER),
+          "const first = ((y + row) * image.width + x) * n;", "const first = ((y + row) * w + x) * n;", PICTURES),
     Fault("blocks at the border are divided as whole ones", "web/pixels.js",
           "sum / side(width, block % w) / side(height, Math.floor(block / w))", "sum / n / n", NUMBERS),
     Fault("a stop up is darker", "web/paint.js", "(look.high - look.low) * 2 ** -stops",
-          "(look.high - look.low) * 2 ** stops", VIEWER),
+          "(look.high - look.low) * 2 ** stops", PICTURES),
     Fault("points at the reference's noise are filled", "web/figure.js",
-          "mark(index, place(p), p.floor)", "mark(index, place(p), false)", PAGE),
+          "mark(index, place(p), p.floor)", "mark(index, place(p), false)", PICTURES),
     Fault("zoom has no end", "web/viewport.js",
           "const next = Math.min(largestZoom, zoom);", "const next = zoom;", NUMBERS),
     Fault("before the first layer there is none", "web/viewer_controls.js",
-          "options[(at + by + options.length) % options.length]", "options[(at + by) % options.length]", VIEWER),
+          "options[(at + by + options.length) % options.length]", "options[(at + by) % options.length]", PICTURES),
 ]
