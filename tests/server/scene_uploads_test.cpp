@@ -77,6 +77,18 @@ TEST_F(Uploads, AGoodSceneGetsItsNameOnceAndIsNeverReplaced) {
   EXPECT_EQ(scenes(), std::set<std::string>{"room.glb"});
 }
 
+TEST_F(Uploads, AnotherSceneOfTheSameSizeIsAConflict) {
+  SceneUploads uploads = make(script("exit 0"));
+  const std::string first = "glTF" + std::string(200'000, 'a');  // more than is compared at once
+  ASSERT_EQ(put(uploads, "a.glb", first).outcome, Outcome::created);
+  for (const std::size_t changed : {std::size_t{4}, first.size() - 1}) {
+    std::string other = first;
+    other[changed] = 'b';
+    EXPECT_EQ(put(uploads, "a.glb", other).outcome, Outcome::conflict) << changed;
+  }
+  EXPECT_EQ(put(uploads, "a.glb", first).outcome, Outcome::same);
+}
+
 TEST_F(Uploads, ASceneThatAnOlderRootHidesIsRefusedUnlessItIsTheSame) {
   const std::string cornell = scene("cornell.glb");
   const fs::path older = temp / "older";
