@@ -176,9 +176,8 @@ bool RenderLoop::iterate(const std::function<bool()>& late) {
   const std::function<bool()> stop = [&] { return task_.interrupted() || late(); };
   const std::uint64_t iteration = state_.done.next();
   const WorkSection section(task_.pool, "iteration");
-  task_.pool.for_each(frame_.height, [&](int y) {
-    std::fill_n(&frame_.at(0, y), frame_.width, Rgb(0, 0, 0));
-  });
+  task_.pool.for_each(frame_.height,
+                      [&](int y) { std::fill_n(&frame_.at(0, y), frame_.width, Rgb(0, 0, 0)); });
   const std::span<Image> layers = state_.layers.begin(task_.pool);
   clock_.start();
   try {

@@ -14,11 +14,7 @@ import time
 from faults import FAULTS
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Those that are quick to build and to run first: a fault that they notice needs no other.
-PROGRAMS = [["test_core", "test_materials", "test_scene", "test_emitters", "test_path", "test_guides",
-             "test_connections", "test_visibility", "test_film"],
-            ["test_renderer"]]
-PATIENCE = 900  # seconds of a program; a fault that makes it hang is noticed, too
+PATIENCE = 900  # seconds of a test program or file; a fault that makes it hang is noticed, too
 
 
 def copy_tree(folder):
@@ -40,6 +36,17 @@ def problems(faults):
             yield f'"{fault.name}": its old text stands {count} times in {fault.file}, must be once: {fault.old!r}'
 
 
+def is_node(test):
+    return test.endswith(".mjs")
+
+
+def targets_of(test):
+    """What must be built for a test."""
+    if not is_node(test):
+        return [test]
+    return ["lacuna"] if test.startswith("tests/jobs/") else ["lacuna", "lacuna-server"]
+
+
 class Copy:
     """A copy of the tree that is built again and again."""
 
@@ -48,6 +55,10 @@ class Copy:
         copy_tree(folder)
         (folder / "build/release").mkdir(parents=True)
         self.must("configure", ["cmake", "--preset", "release"])
+        # The browser driver, which the copy lacks since git ignores it.
+        driver = ROOT / "tests/web/node_modules"
+        if driver.is_dir():
+            (folder / "tests/web/node_modules").symlink_to(driver)
 
     def call(self, command, **options):
         return subprocess.run(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -58,18 +69,19 @@ class Copy:
         if done.returncode != 0:
             raise RuntimeError(f"{what} failed:\n{done.stdout[-4000:]}")
 
-    def first_red(self):
-        """The first test that fails, after building what it takes; None: all pass."""
-        for programs in PROGRAMS:
+    def first_red(self, stages):
+        """The first test of these stages that fails, after building what each takes; None: all pass."""
+        for tests in map(str.split, stages):
+            targets = sorted({target for test in tests for target in targets_of(test)})
             self.must("the build", ["cmake", "--build", "--preset", "release", "-j", str(self.jobs), "--target",
-                                    *programs])
-            for program in programs:
-                red = self.run(program)
+                                    *targets])
+            for test in tests:
+                red = self.run_node(test) if is_node(test) else self.run_program(test)
                 if red:
                     return red
         return None
 
-    def run(self, program):
+    def run_program(self, program):
         environment = {**os.environ, "GTEST_FAIL_FAST": "1"}
         try:
             done = self.call([str(self.folder / "build/release/tests" / program)], env=environment, timeout=PATIENCE)
@@ -80,12 +92,22 @@ class Copy:
         failed = re.search(r"\[  FAILED  \] (\S+?),? ", done.stdout)
         return f"{program} {failed[1] if failed else '(crashed)'}"
 
+    def run_node(self, file):
+        try:
+            done = self.call(["node", "--test", "--test-reporter=tap", file], timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            return f"{file} (did not end)"
+        if done.returncode == 0:
+            return None
+        failed = re.search(r"^ *not ok \d+ - (.*)", done.stdout, re.MULTILINE)
+        return f"{file}: {failed[1] if failed else '(crashed)'}"
+
     def plant(self, fault):
         file = self.folder / fault.file
         sound = file.read_text()
         file.write_text(sound.replace(fault.old, fault.new))
         try:
-            return self.first_red()
+            return self.first_red(fault.tests)
         finally:
             file.write_text(sound)
 
@@ -106,7 +128,8 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # the copy goes with us
     with tempfile.TemporaryDirectory(prefix="lacuna-planted-") as folder:
         copy = Copy(pathlib.Path(folder), asked.jobs)
-        if red := copy.first_red():
+        stages = list(dict.fromkeys(stage for fault in faults for stage in fault.tests))
+        if red := copy.first_red(stages):
             sys.exit(f"without any fault {red} is red")
         for fault in faults:
             begin = time.monotonic()

@@ -5,7 +5,7 @@
 //   down          the controller is away
 //   full          what is submitted waits (Resources)
 //   lose          sbatch makes a job, and its answer is lost
-//   deaf          sbatch takes long before it makes a job; mute: after it has
+//   deaf          sbatch waits before it makes a job until the file is gone; mute: after it has
 //   accounts      sacct has accounts
 //   quota         no more jobs may be submitted
 // A job's file may be changed by a test: what runs looks at nothing but `wanted` in it.
@@ -24,6 +24,15 @@ const read = (id) => JSON.parse(fs.readFileSync(file(id), "utf8"));
 const ids = () => fs.readdirSync(folder).filter((n) => /^\d+\.json$/.test(n)).map((n) => parseInt(n, 10))
   .sort((a, b) => a - b);
 const pause = (ms) => new Promise((resolve) => { setTimeout(resolve, ms); });
+
+/// Waits until a file is gone. It ends with the command that called it, whatever has become of the file.
+async function gone(what) {
+  const caller = process.ppid;
+  while (is(what)) {
+    await pause(10);
+    if (process.ppid !== caller) process.exit(1);
+  }
+}
 
 function write(job) {
   const temporary = path.join(folder, `.${job.id}.${process.pid}`);
@@ -82,7 +91,7 @@ async function sbatch() {
     fail(1, "sbatch: error: QOSMaxSubmitJobPerUserLimit", "sbatch: error: Batch job submission failed: Job violates "
       + "accounting/QOS policy (job submit limit, user's size and/or time limits)");
   }
-  if (is("deaf")) await pause(3000);
+  await gone("deaf");
   const id = 1 + Math.max(0, ...ids());
   const job = { id, name: options["job-name"], options, args, nodes: "", restarts: 0,
     state: "PENDING", reason: is("full") ? "Resources" : "None" };
@@ -95,7 +104,7 @@ async function sbatch() {
   fs.copyFileSync(args.at(-1), job.copy);
   write(job);
   if (!is("full")) start(id);
-  if (is("mute")) await pause(3000);
+  await gone("mute");
   if (is("lose")) {
     fail(1, "sbatch: error: Batch job submission failed: Socket timed out on send/recv operation");
   }

@@ -209,6 +209,23 @@ test("the log is read from any place on", async (t) => {
   assert.equal((await service.fetch(`/api/jobs/${id}/log?offset=${whole.length + 1}`)).status, 416);
 });
 
+test("a long log is read in parts", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("finish");
+  await service.reaches(id, "done");
+  const whole = "0123456789abcdef".repeat(150_000);
+  fs.writeFileSync(path.join(service.folder(id), "log.txt"), whole);
+  let read = "";
+  for (let part = 1; read.length < whole.length; part += 1) {
+    const answer = await service.fetch(`/api/jobs/${id}/log?offset=${read.length}`);
+    const text = await answer.text();
+    assert.ok(text.length > 0 && text.length <= 1 << 20, `part ${part} has ${text.length} bytes`);
+    read += text;
+    assert.equal(answer.headers.get("next-offset"), String(read.length));
+  }
+  assert.equal(read, whole);
+});
+
 test("the cache: artefacts as `lacuna cache list` shows them, and references", async (t) => {
   const places = folders(t);
   const entries = fileURLToPath(new URL("../fuzz/corpus/cache_entry", import.meta.url));

@@ -165,6 +165,27 @@ test("who has not seen the latest state changes nothing", async (t) => {
   assert.equal((await service.json(`/api/jobs/${id}`)).priority, 4);
 });
 
+test("a cancel, a retry, an extension and a removal are refused after a change that was not seen", async (t) => {
+  const service = await Service.start(folders(t));
+  const running = await service.post("gate never");
+  await service.reaches(running, "running");
+  const id = await service.post("finish");
+  const etag = async () => (await service.fetch(`/api/jobs/${id}`)).headers.get("etag");
+  const old = await etag();
+  const ask = async (method, what, seen, body) => (await service.fetch(`/api/jobs/${id}${what}`, { method,
+    body: body && JSON.stringify(body), headers: { "If-Match": seen, "Content-Type": "application/json" } })).status;
+  const stands = async (state) => assert.equal((await service.json(`/api/jobs/${id}`)).state.state, state);
+  assert.equal((await patch(service, id, { priority: 2 })).status, 200);
+  assert.equal(await ask("POST", "/cancel", old), 412);
+  await stands("queued");
+  assert.equal(await ask("POST", "/cancel", await etag()), 200);
+  assert.equal(await ask("POST", "/retry", old), 412);
+  assert.equal(await ask("POST", "/extend", old, { budget: { seconds: 1000 } }), 412);
+  assert.equal(await ask("DELETE", "", old), 412);
+  await stands("cancelled");
+  assert.equal(await ask("DELETE", "", await etag()), 204);
+});
+
 test("the same key and body make one job, also at once and after a restart", async (t) => {
   const places = folders(t);
   const first = await Service.start(places);
@@ -229,11 +250,18 @@ test("without room on the disk, jobs wait; with it, they go on", async (t) => {
   const places = folders(t);
   const first = await Service.start(places, ["--disk-floor", "900000T"]);
   const id = await first.post("finish");
-  await new Promise((resolve) => { setTimeout(resolve, 1500); });
+  // A runner looks at the disk before it takes a job, the maintenance thread only once a second.
+  const { obstacle } = await until(async () => {
+    const health = await first.json("/health");
+    return health.status === "waiting" && health;
+  }, "the lack of room is noticed");
+  assert.match(obstacle, /are free on the disk, the floor is/);
   assert.equal((await first.json(`/api/jobs/${id}`)).state.state, "queued");
   const { disk } = await first.json("/api/info");
   assert.ok(disk.free_bytes < disk.floor_bytes);
   await first.stop();
+  assert.equal(first.stored(id).attempts, 0);
+  assert.ok(!fs.existsSync(path.join(first.folder(id), "log.txt")), "no renderer was started");
   const second = await Service.start(places);
   await second.reaches(id, "done");
 });

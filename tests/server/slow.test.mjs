@@ -1,13 +1,12 @@
-// 500 slow clients of each kind: another client is answered all the same. The limit here only tells
-// "is served" from "waits for the slow ones", which hold their threads for 5 s and more;
-// tests/bench/slow_clients.mjs measures.
+// 500 slow clients of each kind: another client is answered while all of them are connected.
+// tests/bench/slow_clients.mjs measures how quickly.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { folders, Service } from "./service.mjs";
+import { folders, Service, until } from "./service.mjs";
 
 const program = path.join(path.dirname(fileURLToPath(import.meta.url)), "slow_clients.mjs");
 
@@ -18,6 +17,11 @@ async function attack(t, service, kind, target) {
   await new Promise((resolve) => { child.stdout.once("data", resolve); });
 }
 
+async function openConnections(service) {
+  const metrics = await (await service.fetch("/metrics")).text();
+  return Number(/^lacuna_http_connections (\d+)$/m.exec(metrics)[1]);
+}
+
 for (const kind of ["head", "body", "large body", "chunks", "reader"]) {
   test(`500 slow clients: ${kind}`, async (t) => {
     const service = await Service.start(folders(t));
@@ -25,14 +29,13 @@ for (const kind of ["head", "body", "large body", "chunks", "reader"]) {
     await service.reaches(id, "done");
     fs.writeFileSync(path.join(service.folder(id), "image.exr"), Buffer.alloc(32 << 20));
     await attack(t, service, kind, `/api/jobs/${id}/files/image.exr`);
-    const times = [];
-    for (let i = 0; i < 50; i += 1) {
-      const begin = performance.now();
+    // Answers that come while the slow ones are connected did not wait for them to leave.
+    let served = 0;
+    await until(async () => {
       assert.deepEqual(await service.json("/health"), { status: "ok" });
-      times.push(performance.now() - begin);
-    }
-    times.sort((a, b) => a - b);
-    assert.ok(times[44] < 2500, `nine of ten are answered in ${times[44]} ms`);
+      served += await openConnections(service) > 500;
+      return served >= 10;
+    }, "ten requests are served beside 500 open connections");
     const other = await service.post("finish");
     await service.reaches(other, "done");
     const image = await service.fetch(`/api/jobs/${other}/files/image.exr`);
@@ -47,9 +50,10 @@ test("500 slow clients while renderers are started: the service lives", async (t
   await attack(t, service, "chunks", "/health");
   const ids = [];
   for (let i = 0; i < 40; i += 1) ids.push(await service.post("finish"));
-  for (let done = 0; done < 10;) {
-    ({ counts: { done } } = await service.json("/api/jobs?limit=1"));
-    await service.json(`/api/jobs/${ids[done]}`);
-  }
+  await until(async () => {
+    const { counts: { done } } = await service.json("/api/jobs?limit=1");
+    await service.json(`/api/jobs/${ids[Math.min(done, ids.length - 1)]}`);
+    return done >= 10;
+  }, "ten jobs are done");
   assert.equal(service.child.exitCode, null);
 });

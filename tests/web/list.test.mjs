@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { longestTask, newPage, ready, screenshot, visit } from "./browser.mjs";
+import { frames, longestTask, newPage, ready, screenshot, visit } from "./browser.mjs";
 import { manyJobs, progress } from "./fixtures.mjs";
 import { browser, mock, open, origin, page } from "./stage.mjs";
 
@@ -215,6 +215,44 @@ test("jobs chosen in the list are compared; the choice is kept, and cleared", as
   await button("Clear the selection").click();
   await page.waitForFunction(() => document.querySelectorAll("tr[data-job] input:checked").length === 0);
   assert.equal(await button("Compare").isDisabled(), true);
+});
+
+test("a job that is removed is no longer chosen, also where no row of it is shown", async () => {
+  await open("/");
+  for (const id of [cornell, shallow, evil]) await page.check(`tr[data-job="${id}"] input`);
+  await button("Compare (3)").waitFor();
+  while (mock.listeners.size === 0) await page.waitForTimeout(20);
+  mock.drop(shallow);
+  await button("Compare (2)").waitFor();
+  await page.fill("input[type=search]", "nothing has this name");
+  await counted("0 of 5");
+  mock.drop(evil);
+  await button("Compare (1)").waitFor();
+  assert.equal(await button("Compare (1)").isDisabled(), true);
+  await page.reload();  // the choice goes with the page
+});
+
+test("an answer to an earlier filter that comes late does not replace the list", async (t) => {
+  mock.events = false;  // then the list is polled, beside what the filter asks for
+  await open("/");
+  const answer = mock.answer.bind(mock);
+  let held = null;
+  mock.answer = (request, response) => {
+    const url = new URL(request.url, "http://mock");
+    if (held !== null || url.pathname !== "/api/jobs" || url.searchParams.has("label")) return answer(request, response);
+    held = () => answer(request, response);
+    return Promise.resolve();
+  };
+  t.after(() => { delete mock.answer; });
+  while (held === null) await page.waitForTimeout(20);
+  await page.fill("input[type=search]", "cornell");
+  await counted("3 of 6");
+  const late = page.waitForResponse((response) => response.url().endsWith("/api/jobs?limit=100"));
+  await held();
+  await (await late).finished();
+  await frames(page);
+  assert.equal(await text("main > .tools output"), "3 of 6");
+  assert.equal((await rows()).includes(running), false);
 });
 
 test("an empty list says how to post the first job, and sees it come", async () => {

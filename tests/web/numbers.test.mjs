@@ -50,6 +50,14 @@ test("errors and times are interpolated in log-log, and never beyond the curve",
   assert.equal(await call("/curve.js", "reaches", curve, 0.1), null);
 });
 
+test("an error counts as reached where a point has exactly this value, the last one too", async () => {
+  const curve = [{ x: 1, y: 1 }, { x: 2, y: 0.5 }, { x: 4, y: 0.25 }];
+  assert.equal(await call("/curve.js", "reaches", curve, 0.25), 4);
+  assert.equal(await call("/curve.js", "reaches", curve, 1), 1);
+  assert.equal(await call("/curve.js", "reaches", [{ x: 1, y: 0.5 }, { x: 2, y: 0.5 }], 0.5), 1);
+  assert.equal(await call("/curve.js", "reaches", curve, 0.2), null);
+});
+
 test("instants and errors that all curves share", async () => {
   const curves = [halfSlope(1, [1, 200]), halfSlope(4, [3, 100]), []];
   assert.deepEqual(await call("/curve.js", "commonInstants", curves), [10, 25, 50, 100]);
@@ -84,9 +92,50 @@ test("numbers are written with three digits, whole ones in full", async () => {
   assert.equal(await call("/format.js", "number", null), "—");
   assert.equal(await call("/format.js", "duration", 59.6), "1 min 0 s");
   assert.equal(await call("/format.js", "duration", 7500), "2 h 5 min");
+  assert.equal(await call("/format.js", "duration", 7559), "2 h 5 min");
+  assert.equal(await call("/format.js", "duration", 86400 + 3600), "1 d 1 h");
   assert.equal(await call("/format.js", "bytes", 1536), "1.50\u202fKiB");
   assert.equal(await call("/format.js", "quantity", 2.5e7, ["rays_per_second"]), "25.0\u202fM/s");
   assert.equal(await call("/format.js", "quantity", 0.5, ["load", "seconds"]), "0.500\u202fs");
+});
+
+test("instants are shown in the reader's time zone", async () => {
+  const east = await openPage(browser, page.url(), { timezoneId: "Asia/Kolkata" });
+  const shown = await east.evaluate(async () => {
+    const { when } = await import("/format.js");
+    return ["2026-01-31T23:59:59.123Z", ""].map(when);
+  });
+  assert.deepEqual(shown, ["2026-02-01 05:29:59", ""]);
+  await east.context().close();
+});
+
+test("a picture is made small by the means of its blocks, also of those that its border cuts", async () => {
+  const small = await page.evaluate(async () => {
+    const { reduced } = await import("/pixels.js");
+    const { image, mean } = await reduced({ width: 3, height: 3, channels: ["Y"], scale: 2,
+      data: Float32Array.of(1, 3, 5, 5, 7, 9, 2, 4, 8) }, 2);
+    return { size: [image.width, image.height], values: [...image.data], scale: image.scale, mean };
+  });
+  near(small.mean, 2 * 44 / 9);
+  assert.deepEqual({ ...small, mean: null }, { size: [2, 2], values: [4, 7, 3, 8], scale: 2, mean: null });
+});
+
+test("zoom has a largest step, and ends with the whole picture", async () => {
+  const [size, box] = [{ width: 100, height: 50 }, { width: 500, height: 500 }];
+  const at = (zoom) => call("/viewport.js", "zoomTo", { zoom: null, x: 0.5, y: 0.5 }, size, box, zoom);
+  assert.equal((await at(200)).zoom, 200);
+  assert.equal((await at(1e6)).zoom, 256);
+  assert.deepEqual(await at(0.5), { zoom: 1, x: 0.5, y: 0.5 });
+  assert.deepEqual(await call("/viewport.js", "zoomTo", { zoom: 4, x: 0.1, y: 0.5 }, { width: 1000, height: 1000 }, box, 0.1),
+    { zoom: null, x: 0.5, y: 0.5 });
+});
+
+test("render times are equal if their ratio is at most 1.05", async () => {
+  const classOf = (times) => page.evaluate(async (all) => (await import("/curve.js")).aboutTimes(all).className, times);
+  assert.equal(await classOf([100, 104]), "note");
+  assert.equal(await classOf([100, 106]), "warning");
+  assert.equal(await classOf([0.1, 0.5]), "warning");
+  assert.equal(await classOf([7]), "note");
 });
 
 test("a job survives the shell: quotes in names are quoted", async () => {
@@ -95,8 +144,10 @@ test("a job survives the shell: quotes in names are quoted", async () => {
 });
 
 test("what a job leaves open is left out where it is posted again", async () => {
-  const job = { scene: "a", budget: { seconds: 5, iterations: null }, layers: [], environment: null };
-  assert.deepEqual(await call("/format.js", "withoutNulls", job), { scene: "a", budget: { seconds: 5 }, layers: [] });
+  const job = { scene: "a", budget: { seconds: 5, iterations: null }, layers: [], environment: null, seed: 0,
+    exclusive: false, label: "" };
+  assert.deepEqual(await call("/format.js", "withoutNulls", job),
+    { scene: "a", budget: { seconds: 5 }, layers: [], seed: 0, exclusive: false, label: "" });
 });
 
 test("a job file is written with short lists on one line, and reads back the same", async () => {

@@ -231,6 +231,32 @@ test("compare lays as many curves over one another as there are jobs", async () 
   assert.deepEqual(page.troubles, []);
 });
 
+/// The cells of the first table of a comparison, by rows.
+const compared = () => page.locator("main section table tbody tr").evaluateAll((rows) =>
+  rows.map((row) => [...row.children].map((cell) => cell.textContent)));
+
+test("compare says how many times as long as the fastest each job takes to the same error", async () => {
+  const times = { [cornell]: 100, [shallow]: 200 };
+  for (const [id, time] of Object.entries(times)) {
+    mock.find(id).files["curve.csv"] = `iteration,seconds,cpu_seconds,rmse\n1,1,1,1\n100,${time},${time},0.1\n`;
+  }
+  await open(`/#/compare?jobs=${cornell},${shallow}`);
+  assert.deepEqual((await compared()).slice(0, 2).map((row) => row.slice(-2)),
+    [["100\u202fs", "1.00×"], ["200\u202fs", "2.00×"]]);
+});
+
+test("compare tells jobs of equal names apart by the ends of their ids", async () => {
+  const [one, other] = [mock.find(cornell), mock.find(shallow)];
+  other.job = { ...one.job, seed: 2 };
+  await open(views.compare);
+  const names = (await compared()).map(([name]) => name);
+  for (const id of [cornell, shallow]) {
+    const ending = `Cornell box, 6 edges, path · bsdf (${id.split("-").pop()})`;
+    assert.ok(names.includes(ending), `${names} without ${ending}`);
+  }
+  assert.ok(names.includes("atrium.glb, path · bsdf"), `${names}`);
+});
+
 test("compare shows pictures without layers side by side, and says why", async () => {
   for (const id of [cornell, shallow]) {
     delete mock.find(id).files["layers.json"];

@@ -88,7 +88,7 @@ test("sweep: stopped, it goes on to the same table", async (t) => {
   assert.equal(undisturbed.length, 8);
   rmSync(join(folder, "a.sweep"), { recursive: true });
   const begun = start(folder, "sweep", "a.json");
-  while (!existsSync(join(folder, "a.sweep/runs/0002-1"))) await new Promise((wake) => setTimeout(wake, 2));
+  await until(() => existsSync(join(folder, "a.sweep/runs/0002-1")), "the third run has begun");
   begun.child.kill("SIGTERM");
   const stopped = await begun.ended;
   assert.equal(stopped.code, 75, stopped.err);
@@ -101,7 +101,7 @@ test("sweep: killed at once, it leaves no renderer, and goes on", async (t) => {
   const folder = sweepFile(t, { ...small, job: { ...small.job, budget: { seconds: 1.5 } }, seeds: 1, axes: {} , baseline: {} });
   const begun = start(folder, "sweep", "a.json");
   const first = join(folder, "a.sweep/runs/0001-1");
-  while (!existsSync(join(first, "progress.json"))) await new Promise((wake) => setTimeout(wake, 2));
+  await until(() => existsSync(join(first, "progress.json")), "the first run renders");
   begun.child.kill("SIGKILL");
   await begun.ended;
   const renderers = () => readdirSync("/proc").filter((pid) => /^\d+$/.test(pid)).filter((pid) => {

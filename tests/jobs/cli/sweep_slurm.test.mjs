@@ -64,7 +64,8 @@ onCluster("sweep on Slurm: it has so many runs at a time", async (cluster, folde
   cluster.set("full");
   const going = begin(cluster, folder, "--jobs", "2");
   await until(() => cluster.jobs().length === 2, "two are submitted");
-  await new Promise((wake) => { setTimeout(wake, 500); });
+  const polls = cluster.calls("squeue").length;
+  await until(() => cluster.calls("squeue").length >= polls + 3, "the queue looks at Slurm three times more");
   assert.equal(cluster.jobs().length, 2);
   cluster.unset("full");
   cluster.startWaiting();

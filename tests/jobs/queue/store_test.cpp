@@ -190,6 +190,18 @@ TEST_F(StoreTest, TheLineIsThatOfPrioritiesThenOfNumbersWhateverTheClockSays) {
   EXPECT_EQ(ids_of(store->unfinished(1, 2)), (Ids{"d", "a"}));
 }
 
+TEST_F(StoreTest, AChangeOfNothingIsNoEventAndNoRevision) {
+  add(job("a"));
+  const auto last = store->journal().last();
+  const auto revision = store->find("a")->revision;
+  set("a", [](JobEntry&) {});
+  EXPECT_EQ(store->journal().last(), last);
+  EXPECT_EQ(store->find("a")->revision, revision);
+  set("a", [](JobEntry& e) { e.priority = 1; });
+  EXPECT_GT(store->journal().last(), last);
+  EXPECT_GT(store->find("a")->revision, revision);
+}
+
 TEST_F(StoreTest, EventsGoOnAfterARestart) {
   add(job("a"));
   add(job("b"));

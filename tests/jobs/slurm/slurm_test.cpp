@@ -153,6 +153,21 @@ class SlurmScriptTest : public testing::Test {
     const int status = std::system(command.c_str());  // NOLINT(cert-env33-c)
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
+  /// The script runs `text` in place of a program.
+  void replace(const std::string& program, const std::string& text) const {
+    const auto file = temp.write(program, "#!/bin/sh\n" + text);
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+  /// The script's pauses take so many seconds; each adds a line to the file sleep.times.
+  void replace_sleep(const std::string& seconds) const {
+    replace("sleep", "echo >>\"$0.times\"\nexec /bin/sleep " + seconds + "\n");
+  }
+  /// Waits until a file contains `text`; the limit ends a test that would hang.
+  void await_text(const std::string& file, const std::string& text) const {
+    for (int i = 0; i < 10'000 && content_of(temp / file).find(text) == std::string::npos; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
   void record(const std::string& of) const { write_submission(folder, {of, 0, "now"}); }
 
   TemporaryFolder temp;
@@ -186,8 +201,7 @@ while :; do sleep 0.05; done)"),
 }
 
 TEST_F(SlurmScriptTest, ASubmissionThatWasGivenUpRendersNothing) {
-  const auto sleep = temp.write("sleep", "#!/bin/sh\necho >>\"$0.times\"\n");  // takes no time
-  std::filesystem::permissions(sleep, std::filesystem::perms::owner_all);
+  replace_sleep("0");
   record(name + "x");
   EXPECT_EQ(run("exit 3"), 0);
   EXPECT_EQ(read_submission_exit(folder, name), std::nullopt);
@@ -196,9 +210,11 @@ TEST_F(SlurmScriptTest, ASubmissionThatWasGivenUpRendersNothing) {
 }
 
 TEST_F(SlurmScriptTest, WaitsForAFolderThatLags) {
+  replace_sleep("0.01");
   EXPECT_EQ(run("exit 0",
                 [this] {
-                  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+                  // Until the script has looked for the folder twice in vain.
+                  await_text("sleep.times", "\n\n");
                   record(name);
                 }),
             0);
@@ -208,15 +224,13 @@ TEST_F(SlurmScriptTest, WaitsForAFolderThatLags) {
 TEST_F(SlurmScriptTest, WaitsForARendererThatIsStillAtWork) {
   record(name);
   auto lock = std::make_unique<JobFolder::Lock>(*folder.try_lock());
-  bool released = false;
-  EXPECT_EQ(run(R"(flock --nonblock "$2/.lock" true || exit 9)",
+  replace("flock", "echo \"$@\" >>\"$0.calls\"\nexec /usr/bin/flock \"$@\"\n");
+  EXPECT_EQ(run(R"(/usr/bin/flock --nonblock "$2/.lock" true || exit 9)",
                 [&] {
-                  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-                  released = true;
+                  await_text("flock.calls", "--wait");
                   lock.reset();
                 }),
             0);
-  EXPECT_TRUE(released);
 }
 
 TEST_F(SlurmScriptTest, RecordsAreKeptAndForgotten) {

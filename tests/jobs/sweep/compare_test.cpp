@@ -86,6 +86,13 @@ TEST(TimeToError, BeforeTheFirstInstantIsABound) {
   EXPECT_FALSE(time_to_error(slow, quick, 1).speed_up);  // the baseline's time is not known
 }
 
+TEST(TimeToError, ABoundOfOneRunMakesTheMeanABound) {
+  const std::vector first{falling(0.5), falling(4)}, last{falling(4), falling(0.5)};
+  EXPECT_TRUE(time_to_error(first, {}, 1).at_most);
+  EXPECT_TRUE(time_to_error(last, {}, 1).at_most);
+  EXPECT_FALSE(time_to_error(first, {}, 0.25).at_most);
+}
+
 TEST(Floor, OfOneRunIsToldOfAll) {
   const std::vector cell{falling(8), ErrorCurve({{1, 8}, {4, 2, true}}, 4)};
   EXPECT_FALSE(error_at_time(cell, {}, 1).at_floor);
@@ -142,6 +149,18 @@ TEST(Front, WhatCannotBeToldApartIsTied) {
   ASSERT_EQ(front.size(), 1u);
   EXPECT_EQ(front[0].tied, std::vector<std::size_t>{1 - front[0].best});
   EXPECT_TRUE(pareto_front({}).empty());
+}
+
+TEST(Front, IsAtTheFloorIfAnyInstantOfItIs) {
+  const ErrorCurve run({{1, 8}, {2, 4, true}, {4, 2}, {8, 1}}, 8);
+  const ErrorCurve sound({{1, 8}, {2, 4}, {4, 2}, {8, 1}}, 8);
+  const auto front = [](const ErrorCurve& curve) {
+    const std::vector cell{curve, curve};
+    return pareto_front(std::vector<Contender>{{cell, 0}});
+  };
+  ASSERT_EQ(front(run).size(), 1u);
+  EXPECT_TRUE(front(run)[0].at_floor);
+  EXPECT_FALSE(front(sound)[0].at_floor);
 }
 
 TEST(BreakEven, WhenPreparationHasPaid) {

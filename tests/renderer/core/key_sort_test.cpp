@@ -14,14 +14,13 @@ std::vector<std::uint32_t> sorted(std::span<const std::uint32_t> key_of, std::si
                                   int threads, KeySort<std::uint32_t>& sort) {
   constexpr std::size_t block = 100;
   std::vector<std::uint32_t> order(key_of.size());
-  sort.sort(
-      (key_of.size() + block - 1) / block, keys,
-      [&](std::size_t b, const auto& use) {
-        for (std::size_t i = b * block; i < std::min(key_of.size(), (b + 1) * block); ++i) {
-          use(key_of[i], static_cast<std::uint32_t>(i));
-        }
-      },
-      [&](std::size_t k, std::uint32_t i) { order[k] = i; }, ThreadPool(threads));
+  sort.sort((key_of.size() + block - 1) / block, keys,
+            [&](std::size_t b, const auto& use) {
+              for (std::size_t i = b * block; i < std::min(key_of.size(), (b + 1) * block); ++i) {
+                use(key_of[i], static_cast<std::uint32_t>(i));
+              }
+            },
+            [&](std::size_t k, std::uint32_t i) { order[k] = i; }, ThreadPool(threads));
   return order;
 }
 
