@@ -10,8 +10,10 @@ async function follow(service, id, signal, headers = {}) {
   return followAll(service, `/api/jobs/${id}/events`, signal, headers);
 }
 
+/// A stream that does not end by itself is ended after a minute, so that a test which waits for its end fails.
 async function followAll(service, target, signal, headers = {}) {
-  const response = await service.fetch(target, { signal, headers });
+  const limit = AbortSignal.timeout(60_000);
+  const response = await service.fetch(target, { signal: signal ? AbortSignal.any([signal, limit]) : limit, headers });
   assert.equal(response.status, 200);
   assert.equal(response.headers.get("content-type"), "text/event-stream");
   const events = [];
