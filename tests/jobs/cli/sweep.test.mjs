@@ -49,6 +49,9 @@ test("sweep: settings that are objects stand flat in the table, too", async (t) 
   assert.match(header, /^run,cell,baseline,replicate,seed,state,\/integrator,\/integrator\.guide\.strength,\/integrator\.guide\.type,\/integrator\.max_depth,\/integrator\.type,iteration,/);
   assert.match(first, /^0001-1,1,,1,1,done,".*",4,skeleton,,path,1,/);
   assert.match(second, /^0002-1,2,,1,1,done,".*",,,3,bdpt,1,/);
+  // As RFC 4180 has it: a quote within a field is doubled, and the field reads back as what was swept.
+  const quoted = (line) => /^(?:[^,]*,){6}"((?:[^"]|"")*)",/.exec(line)[1].replaceAll('""', '"');
+  assert.deepEqual([first, second].map((line) => JSON.parse(quoted(line))), sweep.axes["/integrator"]);
 });
 
 test("sweep: what is listed is not begun, and array tasks do one run each", async (t) => {
