@@ -78,23 +78,25 @@ function builtList({ artefacts, scene = {} }) {
 }
 
 /// By section: the seconds of all threads in loops, those in which one thread alone worked, and those that threads
-/// waited for the last one of a loop. Sections that kept threads waiting longest come first.
+/// waited for the last one of a loop. Sections that kept threads waiting longest come first; those of less than a
+/// thousandth of the whole are left out.
 function threadTable({ threads, machine = {} }) {
   const count = machine.threads ?? 1;
   const rows = Object.entries(threads.sections)
     .map(([name, s]) => ({ name, ...s, idle: s.serial * (count - 1) + s.waiting }))
     .sort((a, b) => b.idle - a.idle || b.busy - a.busy);
+  const least = sumOf(rows.map((s) => s.busy + s.idle)) / 1000;
+  const shown = rows.filter((s) => s.busy + s.idle >= least);
   return block(`Threads: ${seconds(threads.serial_seconds)} with one thread at work, ` +
     `${seconds(threads.waiting_seconds)} of waiting for others`,
     table(["Section", "One thread", "Waiting", "All threads"],
-      rows.map((s) => [s.name, seconds(s.serial), seconds(s.waiting), seconds(s.busy)]), true));
+      shown.map((s) => [s.name, seconds(s.serial), seconds(s.waiting), seconds(s.busy)]), true));
 }
 
 /// CPU seconds measure the same work by another clock, so they are not part of the total.
 const effortView = (report) => h("div.effort",
   stackedBar("Time", report.seconds, seconds, (name) => !name.endsWith("cpu")),
   stackedBar("Rays", report.counts, number, (name) => ["rays", "shadow rays"].includes(name)),
-  report.threads && threadTable(report),
   builtList(report));
 
 /// The error of each candidate against its own time, after each of its turns.
@@ -121,6 +123,6 @@ const choiceView = (choice) => h("div.candidates", candidateTable(choice), h("di
 /// Everything that a job's view shows of report.json.
 export const reportParts = (report) => [
   report.choice && [h("h2", "Choice of the method"), choiceView(report.choice)],
-  h("h2", "Time and rays"), effortView(report),
+  h("h2", "Time and rays"), effortView(report), report.threads && h("div.threads", threadTable(report)),
   h("h2", "Report"), reportTables(report),
 ];
