@@ -1,8 +1,8 @@
 #include "base/parallel/work_log.h"
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
+
+#include "base/parallel/clock_seconds.h"
 
 namespace lacuna {
 
@@ -10,30 +10,21 @@ namespace {
 
 constexpr std::size_t most_spans = std::size_t{1} << 20;
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace
 
 WorkLog::WorkLog(int threads)
-    : start_(seconds()),
+    : start_(clock_seconds(CLOCK_MONOTONIC)),
       threads_(static_cast<std::size_t>(threads)),
       spans_(static_cast<std::size_t>(threads)) {}
 
-double WorkLog::now() const { return seconds() - start_; }
+double WorkLog::now() const { return clock_seconds(CLOCK_MONOTONIC) - start_; }
 
 void WorkLog::keep_spans() {
   keeps_ = true;
   marked_cpu_ = cpu_now();
 }
 
-double WorkLog::cpu_now() const {
-  if (!keeps_) return 0;
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+double WorkLog::cpu_now() const { return keeps_ ? clock_seconds(CLOCK_THREAD_CPUTIME_ID) : 0; }
 
 std::uint64_t WorkLog::lost_spans() const {
   std::uint64_t lost = 0;

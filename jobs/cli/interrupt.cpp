@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "base/parallel/clock_seconds.h"
 #include "jobs/spec/problems.h"
-#include "renderer/core/clock_seconds.h"
 
 namespace lacuna {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "renderer/core/clock_seconds.h"
+#include "base/parallel/clock_seconds.h"
 
 namespace lacuna {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "base/parallel/clock_seconds.h"
 #include "base/parallel/thread_pool.h"
-#include "renderer/core/clock_seconds.h"
 
 namespace lacuna {
 

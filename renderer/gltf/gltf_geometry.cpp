@@ -1,5 +1,6 @@
 #include "renderer/gltf/gltf_geometry.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -167,7 +168,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   return mesh;
 }
 
-/// How often vertices are moved by morph targets, and by the joints of a skin.
+/// How often vertices are moved by morph targets and by joints: four joints for each JOINTS_n.
 std::size_t moves_of(const file::Model& model, const file::Primitive& primitive,
                      const PlacedNode& node) {
   const std::size_t vertices =
@@ -175,7 +176,10 @@ std::size_t moves_of(const file::Model& model, const file::Primitive& primitive,
   const std::size_t targets = std::min(primitive.targets.size(), node.weights.size());
   const auto unused = std::count(node.weights.begin(),
                                  node.weights.begin() + static_cast<std::ptrdiff_t>(targets), 0.0);
-  return vertices * (targets - static_cast<std::size_t>(unused) + (node.skin ? 4 : 0));
+  const auto joint_sets = std::ranges::count_if(
+      primitive.attributes, [](const auto& a) { return a.first.starts_with("JOINTS_"); });
+  const std::size_t joints = node.skin ? 4 * static_cast<std::size_t>(joint_sets) : 0;
+  return vertices * (targets - static_cast<std::size_t>(unused) + joints);
 }
 
 /// A file of a few kilobytes can place one mesh a million times: count before anything is built.

@@ -54,8 +54,8 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
     scene.cameras = read_cameras(from, nodes, scene.origin, to);
     scene.lights = read_lights(from, nodes, scene.origin, to);
   };
-  {  // Faults of nodes, cameras and lights are told before buffers are read. Of a pose that
-     // animations change nothing is warned.
+  {  // Errors in nodes, cameras and lights are reported before buffers are read. Warnings about a
+     // static pose that animations replace are suppressed.
     const GltfObject from = time.seconds ? GltfObject(json, quiet) : root;
     Warnings& to = time.seconds ? unused : warnings;
     nodes = place_nodes(from, {}, to);

@@ -19,7 +19,8 @@
 namespace lacuna::gltf {
 namespace {
 
-/// The buffers that are files to tinygltf, in the order in which it asks, which is theirs.
+/// The buffers that tinygltf requests as files, in the order of the glTF file, in which it requests
+/// them.
 using BufferQueue = std::deque<Bytes>;
 
 bool has_fallbacks(const GltfObject& root) {

@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "analysis/space/memory_limit.h"
-#include "renderer/core/clock_seconds.h"
+#include "base/parallel/clock_seconds.h"
 
 namespace lacuna {
 namespace {

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "renderer/core/clock_seconds.h"
+#include "base/parallel/clock_seconds.h"
 #include "renderer/path/point_grid.h"
 #include "renderer/path/point_tree.h"
 

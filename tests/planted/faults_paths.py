@@ -158,7 +158,7 @@ FAULTS = [
     Fault("merged paths are too long", "renderer/integrators/bdpt.cpp",
           "if (p.index + at.depth > settings_.max_depth) return;",
           "if (p.index + at.depth > settings_.max_depth + 1) return;"),
-    Fault("vertices are made anew from the neighbour's photons", "renderer/path/photon_map.h",
+    Fault("vertices are restored from the neighbour's photons", "renderer/path/photon_map.h",
           "const std::size_t begin = k > 0 ? part.ends[k - 1] : 0, n = part.ends[k] - begin;",
           "const std::size_t begin = k > 1 ? part.ends[k - 2] : 0, n = part.ends[k] - begin;"),
     Fault("every photon is a caustic", "renderer/integrators/photon_mapping.cpp",

@@ -113,7 +113,7 @@ FAULTS = [
           "lobe.aimed = at_pivot >= at_position;", "lobe.aimed = at_pivot + at_position >= 0;"),
     Fault("lobes that are not aimed forget where they looked from", "renderer/guides/aimed_lobes.cpp",
           "select(aimed, at_pivot, at_position)", "select(aimed, at_pivot, at_pivot)"),
-    Fault("a lobe that few samples tell of is narrow", "renderer/guides/aimed_lobes.cpp",
+    Fault("a lobe of few samples is narrow", "renderer/guides/aimed_lobes.cpp",
           "own / (own + prior_directions);", "1.0;"),
     Fault("light that no lobe expects is learned slowly", "renderer/guides/aimed_lobes.cpp",
           "responsibility_floor = 1e-6F", "responsibility_floor = 0x1p-126F"),

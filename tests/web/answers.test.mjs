@@ -1,23 +1,8 @@
 // A sweep's table of answers, from answers that are made for it.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { launch, openPage } from "./browser.mjs";
-import { Mock } from "./mock_server.mjs";
-
-let browser;
-let mock;
-let page;
-
-before(async () => {
-  browser = await launch();
-  mock = new Mock();
-  page = await openPage(browser, `${await mock.listen()}/#/new`);
-});
-after(async () => {
-  await browser.close();
-  mock.close();
-});
+import { page } from "./module_page.mjs";
 
 /// Cells that differ in one setting; `gains` are their gains at 10 s.
 function answersOf(values, gains = []) {

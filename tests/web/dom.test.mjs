@@ -1,23 +1,8 @@
 // Elements that are changed in place, addresses, and questions.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { launch, openPage } from "./browser.mjs";
-import { Mock } from "./mock_server.mjs";
-
-let browser;
-let mock;
-let page;
-
-before(async () => {
-  browser = await launch();
-  mock = new Mock();
-  page = await openPage(browser, `${await mock.listen()}/#/new`);
-});
-after(async () => {
-  await browser.close();
-  mock.close();
-});
+import { page } from "./module_page.mjs";
 
 test("elements with an id keep to it: they move with it, and stay the same ones", async () => {
   const seen = await page.evaluate(async () => {

@@ -1,27 +1,9 @@
 // The page's arithmetic and its texts, in the browser it is written for.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { launch, openPage } from "./browser.mjs";
-import { Mock } from "./mock_server.mjs";
-
-let browser;
-let mock;
-let page;
-
-before(async () => {
-  browser = await launch();
-  mock = new Mock();
-  page = await openPage(browser, `${await mock.listen()}/#/new`);
-});
-after(async () => {
-  await browser.close();
-  mock.close();
-});
-
-/// What a function of a module gives for some arguments.
-const call = (module, name, ...given) => page.evaluate(
-  async ([m, n, args]) => (await import(m))[n](...args), [module, name, given]);
+import { openPage } from "./browser.mjs";
+import { browser, call, page } from "./module_page.mjs";
 
 const near = (actual, expected) => assert.ok(Math.abs(actual / expected - 1) < 1e-12,
   `${actual}, expected ${expected}`);

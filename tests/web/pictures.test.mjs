@@ -1,26 +1,8 @@
 // The arithmetic of pictures: exposure, errors, crops, the order of layers, and the marks of figures.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { launch, openPage } from "./browser.mjs";
-import { Mock } from "./mock_server.mjs";
-
-let browser;
-let mock;
-let page;
-
-before(async () => {
-  browser = await launch();
-  mock = new Mock();
-  page = await openPage(browser, `${await mock.listen()}/#/new`);
-});
-after(async () => {
-  await browser.close();
-  mock.close();
-});
-
-const call = (module, name, ...given) => page.evaluate(
-  async ([m, n, args]) => (await import(m))[n](...args), [module, name, given]);
+import { call, page } from "./module_page.mjs";
 
 test("a stop up shows values half as large as bright as before, in each look", async () => {
   const colour = await call("/paint.js", "exposed", { look: "colour", ev: 1 }, { ev: null, stops: 0 });

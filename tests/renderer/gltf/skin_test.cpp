@@ -118,6 +118,29 @@ TEST(Skin, NormalizedWeightsAndASecondSet) {
   expect_near(skinned_mesh(b).positions[0], {2.5F, 0, 1.5F});
 }
 
+// 1,000 sets of joints for each of 40,000 vertices, in a file of a megabyte.
+TEST(Skin, ManySetsOfJointsAreRefused) {
+  constexpr std::size_t vertices = 40000;
+  GlbBuilder b = on_the_first_joint();
+  Json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
+  const auto joints = b.add_accessor(std::vector<Joints>(vertices), component_u8, "VEC4");
+  const auto weights = b.add_accessor(std::vector<Weights>(vertices, {1}), component_float, "VEC4");
+  attributes = {{"POSITION", b.add_accessor(std::vector<V3f>(vertices, V3f(1, 2, 3)),
+                                            component_float, "VEC3")}};
+  for (int set = 0; set < 1000; ++set) {
+    attributes["JOINTS_" + std::to_string(set)] = joints;
+    attributes["WEIGHTS_" + std::to_string(set)] = weights;
+  }
+  try {
+    load(b);
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_NE(std::string(e.what()).find("morph targets and joints move vertices more than"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST(Skin, VerticesWithoutWeightsGoWithTheFirstJoint) {
   GlbBuilder b = skinned({{1}, {1}, {1}}, {{1}, {0}, {1}});
   const SceneData scene = load(b);

@@ -35,7 +35,7 @@ TEST(Roulette, KeepsGuidedPathsInTheWindow) {
   const Guide guide(std::make_unique<SidedDirections>());
   Counters counters;
   Walk walk(scene, guide, {.max_depth = max_depth, .roulette_depth = 1}, counters);
-  int told = 0;
+  int checked = 0;
   float least = 1, most = 0;
   walk.trace_paths(batch.states, [&](std::size_t i, int depth) {
     if (depth < 3) return;
@@ -44,9 +44,9 @@ TEST(Roulette, KeepsGuidedPathsInTheWindow) {
     const float ratio = luminance(w.throughput) / luminance(batch.vertex(i, 1).throughput);
     least = std::min(least, ratio);
     most = std::max(most, ratio);
-    ++told;
+    ++checked;
   });
-  EXPECT_GT(told, 30);
+  EXPECT_GT(checked, 30);
   EXPECT_LT(least, 0.6F) << "the guide favoured nothing";
   EXPECT_LT(most, 5.0F / 3 * 1.5F * 2) << "none was split";
 }
