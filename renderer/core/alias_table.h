@@ -46,12 +46,12 @@ class AliasTable {
     if (uniform < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
     return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
-  /// sample() from `point`: the upper half of x selects the bin, point.besides resolves it.
+  /// sample() from `point`: the upper half of x selects the bin, point.u_select resolves it.
   /// Afterwards x is the position within the bin, again uniform to n 2^-32 for each index.
   std::uint32_t sample(Rng::FinePoint& point) const {
     const std::uint32_t i = choose(static_cast<std::uint32_t>(point.x >> 32));
     point.x *= bins_.size();
-    return resolve(i, point.besides).index;
+    return resolve(i, point.u_select).index;
   }
   /// sample() from one number `u`, uniform in [0, 1). Afterwards `u` is the position within the
   /// part of the bin, again uniform, with fewer bits by those that selected the index.

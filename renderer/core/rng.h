@@ -130,12 +130,12 @@ class Rng {
     return {static_cast<double>(choice) * 0x1p-48, {unit(b), unit(c)}};
   }
 
-  /// A point in the unit square whose x has enough bits to select an index first and to place by
-  /// the remainder, and an independent number to select by; from four numbers.
+  /// A point in the unit square and an independent uniform number, from four numbers. The high bits
+  /// of x can select an entry of a table, and its remaining bits place a point there.
   struct FinePoint {
-    std::uint64_t x;        ///< of 2^64
-    std::uint32_t y;        ///< of 2^32
-    std::uint32_t besides;  ///< of 2^32
+    std::uint64_t x;         ///< of 2^64
+    std::uint32_t y;         ///< of 2^32
+    std::uint32_t u_select;  ///< of 2^32; decides a selection, as between a bin and its alias
 
     V2f point() const { return {unit(static_cast<std::uint32_t>(x >> 32)), unit(y)}; }
   };

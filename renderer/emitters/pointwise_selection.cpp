@@ -32,7 +32,7 @@ double unit(const Rng::FinePoint& at) { return static_cast<double>(at.x >> 11) *
 }  // namespace
 
 PointwiseSelection::Choice PointwiseSelection::choose_infinite(Rng::FinePoint at, Rng& rng) const {
-  at.besides = infinite_.size() > 1 ? rng.next_u32() : 0;  // it has been used to select infinity
+  at.u_select = infinite_.size() > 1 ? rng.next_u32() : 0;  // it has been used to select infinity
   const std::uint32_t i = infinite_.sample(at);
   const std::uint32_t entry = infinite_entries_[i];
   return {entry, relative(entry, infinite_share_ * double(infinite_.pmf(i).value)), at};

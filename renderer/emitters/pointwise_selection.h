@@ -50,7 +50,7 @@ class PointwiseSelection {
 
  private:
   bool goes_to_infinity(const Rng::FinePoint& at) const {
-    return at.besides < infinite_share_ * 0x1p32;
+    return at.u_select < infinite_share_ * 0x1p32;
   }
   Choice choose_infinite(Rng::FinePoint at, Rng& rng) const;
   Choice choose_finite(const LightTree::Choice& c, Rng::FinePoint at) const;

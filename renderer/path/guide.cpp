@@ -8,7 +8,7 @@ namespace lacuna {
 namespace {
 
 /// From as many numbers as the BSDF takes, so that those of what follows stay evenly spread. The
-/// bits of `x` beyond the first 32 are those of `besides`, scrambled.
+/// bits of `x` beyond the first 32 are those of `u_select`, scrambled.
 Rng::FinePoint fine_point(Rng& rng) {
   const auto [choice, point] = rng.next_choice_and_point();
   const auto bits = static_cast<std::uint64_t>(choice * 0x1p48);
@@ -16,9 +16,9 @@ Rng::FinePoint fine_point(Rng& rng) {
     return static_cast<std::uint32_t>(unit * 0x1p24F) << 8 |
            static_cast<std::uint32_t>(rest & 0xff);
   };
-  const auto besides = static_cast<std::uint32_t>(bits >> 16);
-  const std::uint32_t low = besides * 0x9e3779b9U;
-  return {std::uint64_t{whole(point.x, bits >> 8)} << 32 | low, whole(point.y, bits), besides};
+  const auto u_select = static_cast<std::uint32_t>(bits >> 16);
+  const std::uint32_t low = u_select * 0x9e3779b9U;
+  return {std::uint64_t{whole(point.x, bits >> 8)} << 32 | low, whole(point.y, bits), u_select};
 }
 
 /// True with probability `c`, by uniform `u` of 2^64, which gets what is left.
@@ -150,7 +150,7 @@ std::optional<BsdfSample> Guide::sample_mixture(const Vertex& v, Rng& rng,
     return BsdfSample{*w, f / p.value, p, false, transmitted, pdf_ratio};
   }
   std::optional<BsdfSample> s =
-      v.bsdf->sample(v.wp, double(u.besides) * 0x1p-32, u.point(), transport);
+      v.bsdf->sample(v.wp, double(u.u_select) * 0x1p-32, u.point(), transport);
   if (!s) return s;
   if (s->delta) {
     s->weight /= 1 - c;

@@ -40,7 +40,7 @@ class NextEvent {
     ahead.selected.entry = c.entry;
     ahead.selected.at.x = c.at.x;
     ahead.selected.at.y = c.at.y;
-    ahead.selected.at.besides = c.at.besides;
+    ahead.selected.at.u_select = c.at.u_select;
     ahead.ratio = c.ratio;
   }
   /// Selects for many receivers at once.
