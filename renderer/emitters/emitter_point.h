@@ -59,9 +59,9 @@ struct EmitterPoint {
     return kind == Kind::area ? offset_end(x, ng, offset, w, distance) : origin_in_space(w);
   }
 
-  /// Density with which sample_leaving() continues a light path along unit `w`. Infinite emitters:
+  /// Density with which sample_Le() continues a light path along unit `w`. Infinite emitters:
   /// uniform per area perpendicular to `w`.
-  Pdf<SolidAngle> leaving_pdf(const V3f& w) const {
+  Pdf<SolidAngle> pdf_Le(const V3f& w) const {
     switch (kind) {
       case Kind::area: {
         const float c = dot(w, ng);

@@ -9,7 +9,7 @@
 #include "renderer/core/bounds.h"
 #include "renderer/emitters/emitter_point.h"
 #include "renderer/emitters/environment.h"
-#include "renderer/emitters/leaving.h"
+#include "renderer/emitters/light_le_sample.h"
 #include "renderer/emitters/pointwise_selection.h"
 #include "renderer/geometry/alpha_mask.h"
 #include "renderer/geometry/scene_data.h"
@@ -71,9 +71,9 @@ class EmitterSet {
       p.emission = varying_emission(source, selected.entry, b);
     return p;
   }
-  /// Samples the first edge of a light path from point `e`.
-  std::optional<Leaving> sample_first_edge(const EmitterPoint& e, Rng& rng) const {
-    return sample_leaving(e, bounds_, rng);
+  /// Samples the first edge of a light path from the point `e`.
+  std::optional<LightLeSample> sample_Le(const EmitterPoint& e, Rng& rng) const {
+    return lacuna::sample_Le(e, bounds_, rng);
   }
 
   /// Density with which sample() returns a point of triangle `triangle` of `mesh` if emitters are

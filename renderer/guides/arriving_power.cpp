@@ -52,9 +52,9 @@ std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& look
   if (lights.empty()) return std::vector<double>(count, 0.0);
   return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<EmittedRay> {
     const EmitterPoint e = lights.sample(lights.choose(rng));
-    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
-    if (!leaving) return std::nullopt;
-    return EmittedRay{leaving->ray, double(luminance(leaving->throughput))};
+    const std::optional<LightLeSample> le = lights.sample_Le(e, rng);
+    if (!le) return std::nullopt;
+    return EmittedRay{le->ray, double(luminance(le->throughput))};
   });
 }
 

@@ -116,9 +116,8 @@ bool PathBuilder::start_light(Rng& rng) {
 }
 
 bool PathBuilder::leave_light(Rng& rng) {
-  const auto leaving =
-      measure_.scene().emitters().sample_first_edge(pool_[light_.front().vertex].emitter, rng);
-  return leaving && arrive(leaving->ray, light_);
+  const auto le = measure_.scene().emitters().sample_Le(pool_[light_.front().vertex].emitter, rng);
+  return le && arrive(le->ray, light_);
 }
 
 bool PathBuilder::go_from_eye(const V3f& w) {

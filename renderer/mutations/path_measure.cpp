@@ -107,7 +107,7 @@ double PathMeasure::from_light(const WholePath& path, const VertexPool& pool, in
   const PathEdge& edge = path.edge(i);
   double p = 0;
   if (i + 1 == k) {
-    p = double(emitter.leaving_pdf(-edge.w).value);
+    p = double(emitter.pdf_Le(-edge.w).value);
   } else {
     const PathNode& node = path.node(i + 1);
     const Bsdf& bsdf = *pool[node.vertex].v.bsdf;

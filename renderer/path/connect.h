@@ -143,7 +143,7 @@ inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, cons
   // x_0 is never merged, and a path of one edge has no next event estimation.
   const TechniqueCounts side{
       .none = 0, .one = one_less, .more = one_less * double(e.next_event_ratio)};
-  const double pdf_rev = v.mis_partial > 0 ? double(guide.leaving_pdf(e, v.wp).value) : 0.0;
+  const double pdf_rev = v.mis_partial > 0 ? double(guide.pdf_Le(e, v.wp).value) : 0.0;
   return mis_weight(n.hit, 0.0,
                     double(e.pdf.value) / double(v.p_fwd.value) *
                         mis_partial_sum(side, index, v.prev_connectible, pdf_rev, v.mis_partial));

@@ -87,7 +87,7 @@ struct EmitterEndpoint {
   }
   /// Times the density of the point on light paths over p_fwd().
   double pdf(const V3f& w) const {
-    return double(guide.leaving_pdf(e, w).value) / double(e.next_event_ratio);
+    return double(guide.pdf_Le(e, w).value) / double(e.next_event_ratio);
   }
   static double pdf_rev(const V3f&) { return 0; }
   double area_factor(const V3f& w) const {

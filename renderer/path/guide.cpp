@@ -171,22 +171,22 @@ Pdf<SolidAngle> Guide::mixed(const GuidedVertex& at, const V3f& wi, Transport tr
   return c * of(transport)->pdf(at, wi) + (1 - c) * bsdf;
 }
 
-std::optional<Leaving> Guide::sample_first_edge(const EmitterSet& lights, const EmitterPoint& e,
-                                                Rng& rng) const {
-  if (!guides(e)) return lights.sample_first_edge(e, rng);
+std::optional<LightLeSample> Guide::sample_Le(const EmitterSet& lights, const EmitterPoint& e,
+                                              Rng& rng) const {
+  if (!guides(e)) return lights.sample_Le(e, rng);
   Vertex v;
   make_white(e, v);
   const std::optional<BsdfSample> s = sample(v, rng, Transport::importance);
   if (!s || !e.pdf.positive()) return std::nullopt;
   const Rgb emitted = e.towards(s->wi);
   if (is_black(emitted)) return std::nullopt;
-  return Leaving{{offset_origin(e.x, e.ng, e.offset, s->wi), s->wi},
-                 s->pdf,
-                 emitted * s->weight * (pi / e.pdf.value)};
+  return LightLeSample{{offset_origin(e.x, e.ng, e.offset, s->wi), s->wi},
+                       s->pdf,
+                       emitted * s->weight * (pi / e.pdf.value)};
 }
 
-Pdf<SolidAngle> Guide::leaving_pdf(const EmitterPoint& e, const V3f& w) const {
-  if (!guides(e)) return e.leaving_pdf(w);
+Pdf<SolidAngle> Guide::pdf_Le(const EmitterPoint& e, const V3f& w) const {
+  if (!guides(e)) return e.pdf_Le(w);
   Vertex v;
   make_white(e, v);
   return pdf(v, e.ng, w, Transport::importance);

@@ -91,10 +91,10 @@ class Guide {
 
   /// The first edge of a light path from the point `e` on one of `lights`. A surface emits as a
   /// white Lambertian one scatters what arrives along its normal, but for the factor pi.
-  std::optional<Leaving> sample_first_edge(const EmitterSet& lights, const EmitterPoint& e,
-                                           Rng& rng) const;
-  /// Density of unit `w` with which sample_first_edge() leaves `e`, as EmitterPoint::leaving_pdf().
-  Pdf<SolidAngle> leaving_pdf(const EmitterPoint& e, const V3f& w) const;
+  std::optional<LightLeSample> sample_Le(const EmitterSet& lights, const EmitterPoint& e,
+                                         Rng& rng) const;
+  /// Density of unit `w` with which sample_Le() leaves `e`, as EmitterPoint::pdf_Le().
+  Pdf<SolidAngle> pdf_Le(const EmitterPoint& e, const V3f& w) const;
 
  private:
   /// The distribution of paths of this transport; null: they follow the BSDF.

@@ -57,7 +57,7 @@ class LightBatch {
       Rng rng = rngs[i];
       Rng::FinePoint at = rng.next_fine_point();
       if (!choices.empty()) at.x = std::uint64_t{choices[i]} << 32 | (at.x & 0xffffffff);
-      if (start(i, at) && goes_on(i, 1)) leave(i, rng);
+      if (start(i, at) && goes_on(i, 1)) start_walk(i, rng);
     }
     const WalkLimits limits{.max_depth = setting_.max_depth - 1,
                             .last_scatters = true,
@@ -256,27 +256,16 @@ class LightBatch {
     return !lights.empty();
   }
 
-  std::optional<Leaving> first_edge(const EmitterPoint& e, Rng& rng) const {
-    const EmitterSet& lights = setting_.scene.emitters();
-    if constexpr (requires { guide_.sample_first_edge(lights, e, rng); }) {
-      static_assert(
-          requires { guide_.leaving_pdf(e, V3f()); }, "weights need its density");
-      return guide_.sample_first_edge(lights, e, rng);
-    } else {
-      return lights.sample_first_edge(e, rng);
-    }
-  }
-
-  /// The first edge.
-  void leave(std::size_t i, Rng& rng) {
+  /// Samples the first edge of path `i` and adds its state to states_.
+  void start_walk(std::size_t i, Rng& rng) {
     const EmitterPoint& e = emitters_[i];
-    const std::optional<Leaving> leaving = first_edge(e, rng);
-    if (!leaving) return;
+    const std::optional<LightLeSample> le = guide_.sample_Le(setting_.scene.emitters(), e, rng);
+    if (!le) return;
     const std::span<Vertex> path = std::span(vertices_).subspan(i * places_, places_);
     place_on(e, path[0]);
-    PathState w{.rng = rng, .ray = leaving->ray, .p = leaving->pdf, .path = path};
-    w.throughput = leaving->throughput;
-    w.roulette.carried_before = 1 / max_component(leaving->throughput);
+    PathState w{.rng = rng, .ray = le->ray, .p = le->pdf, .path = path};
+    w.throughput = le->throughput;
+    w.roulette.carried_before = 1 / max_component(le->throughput);
     if (!e.delta()) w.mis_partial = light_side(setting_.counts).none / double(e.pdf.value);
     path_of_[states_.size()] = i;
     states_.push_back(w);

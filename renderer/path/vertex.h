@@ -45,7 +45,7 @@ struct Vertex {
 
 /// p |cos| / distance^2: the density per area at `to` of a direction `w` (unit) sampled at `from`
 /// with density `p`. The background has no area: its density stays per steradian, and rays from it
-/// have a density per area across `w` (EmitterPoint::leaving_pdf). The only conversion between the
+/// have a density per area across `w` (EmitterPoint::pdf_Le). The only conversion between the
 /// measures.
 inline Pdf<Area> to_area(Pdf<SolidAngle> p, const Vertex& from, const V3f& w, const Vertex& to) {
   if (to.kind == Vertex::Kind::background) return Pdf<Area>(p.value);

@@ -27,7 +27,7 @@ void expect_power(const Scene& scene, const Power& expected, int draws, double u
   Rng rng(51, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < draws; ++i) {
     const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng));
-    const auto l = scene.emitters().sample_first_edge(e, rng);
+    const auto l = scene.emitters().sample_Le(e, rng);
     for (std::size_t c = 0; c < 3; ++c) {
       carried[c].add(l ? double(l->throughput[static_cast<int>(c)]) : 0.0);
     }
@@ -196,7 +196,7 @@ TEST(Hit, FindsThePointThatIsDrawn) {
       EXPECT_EQ(h.ng, e.ng);
       // The place differs by rounding, and so does a texture's value.
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(h.emission[c], e.emission[c], 0.01);
-      EXPECT_NEAR(h.leaving_pdf(e.ng).value, e.leaving_pdf(e.ng).value, 1e-6);
+      EXPECT_NEAR(h.pdf_Le(e.ng).value, e.pdf_Le(e.ng).value, 1e-6);
     }
     EXPECT_GT(found, 500) << name;
   }

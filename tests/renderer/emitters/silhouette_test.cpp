@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/core/frame.h"
-#include "renderer/emitters/leaving.h"
+#include "renderer/emitters/light_le_sample.h"
 #include "tests/statistics.h"
 
 namespace lacuna {
@@ -122,7 +122,7 @@ TEST(Silhouette, PlacesAreUniformAndNoRayPassesTheBoxBy) {
     Rng rng(41, 0, 0, Rng::Purpose::test);
     const double slack = 1e-5 * (c.box.radius() + c.box.high.length());
     for (int i = 0; i < draws; ++i) {
-      const auto l = sample_leaving(e, c.box, rng);
+      const auto l = sample_Le(e, c.box, rng);
       ASSERT_TRUE(l);
       ASSERT_EQ(l->ray.d, -e.x);
       ASSERT_EQ(l->pdf.value, 1 / e.across);
@@ -176,9 +176,9 @@ TEST(Silhouette, NothingLeavesWhereNothingIsSeen) {
     for (int i = 0; i < 100; ++i) {
       const EmitterPoint along = from_infinity(flat, V3f(1, 0, -2), kind);
       EXPECT_EQ(along.across, 0);
-      EXPECT_FALSE(sample_leaving(along, flat, rng));
-      EXPECT_FALSE(along.leaving_pdf(-along.x).positive());
-      EXPECT_FALSE(sample_leaving(from_infinity(point, V3f(1, 2, 3), kind), point, rng));
+      EXPECT_FALSE(sample_Le(along, flat, rng));
+      EXPECT_FALSE(along.pdf_Le(-along.x).positive());
+      EXPECT_FALSE(sample_Le(from_infinity(point, V3f(1, 2, 3), kind), point, rng));
     }
   }
 }

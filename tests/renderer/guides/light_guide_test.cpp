@@ -49,17 +49,17 @@ TEST(LightGuide, FirstEdgesHaveTheirDensity) {
       SCOPED_TRACE(testing::Message() << name << " at " << e.x);
       std::size_t wrong = 0, unlike = 0;
       const auto draw = [&]() -> std::optional<V3f> {
-        const std::optional<Leaving> l = site.guide.sample_first_edge(lights, e, rng);
+        const std::optional<LightLeSample> l = site.guide.sample_Le(lights, e, rng);
         if (!l) return std::nullopt;
         const V3f w = l->ray.d;
         const Rgb sent = e.towards(w) * (abs_dot(w, e.ng) / e.pdf.value);
         const Rgb carried = l->throughput * l->pdf.value;
         wrong += max_abs_component(carried - sent) > 1e-4F * max_component(sent) ? 1 : 0;
-        unlike += std::abs(l->pdf.value - e.leaving_pdf(w).value) > 0.01F * l->pdf.value ? 1 : 0;
+        unlike += std::abs(l->pdf.value - e.pdf_Le(w).value) > 0.01F * l->pdf.value ? 1 : 0;
         return w;
       };
       const auto density = [&](const V3f& w) {
-        return is_black(e.towards(w)) ? 0.0F : site.guide.leaving_pdf(e, w).value;
+        return is_black(e.towards(w)) ? 0.0F : site.guide.pdf_Le(e, w).value;
       };
       expect_density(test::density_check(draw, density, draws, rng, e.ng));
       EXPECT_EQ(wrong, 0U);

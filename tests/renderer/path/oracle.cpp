@@ -35,7 +35,7 @@ Oracle::Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
 }
 
 /// Density with which light paths leave the emitter along `w`.
-double Oracle::leaving(const V3f& w) const {
+double Oracle::pdf_Le(const V3f& w) const {
   const EmitterPoint& e = path_.emitter;
   const double c = V3d(e.ng).dot(V3d(w));
   switch (e.kind) {
@@ -51,7 +51,7 @@ double Oracle::leaving(const V3f& w) const {
     case EmitterPoint::Kind::point:
       return 1 / (4 * std::numbers::pi);
     case EmitterPoint::Kind::spot:
-      return double(e.leaving_pdf(w).value);  // tests/renderer/emitters checks it
+      return double(e.pdf_Le(w).value);  // tests/renderer/emitters checks it
     default: {
       // Uniform over the silhouette of the box.
       const V3d d = scene_.bounds().size();
@@ -66,9 +66,9 @@ double Oracle::light_step(int i) const {
   if (i == 0) return double(path_.emitter.pdf.value);
   const V3f& w = path_.towards_eye(i - 1);
   const double c = cosine(path_.node(i).surface.ng, w);
-  if (i == 1 && path_.emitter.infinite()) return leaving(w) * c;
+  if (i == 1 && path_.emitter.infinite()) return pdf_Le(w) * c;
   const double there = c / squared_distance(path_, i - 1);
-  if (i == 1) return leaving(w) * there;
+  if (i == 1) return pdf_Le(w) * there;
   const WholePath::Node& from = path_.node(i - 1);
   if (from.delta) return there;
   const V3f wo = -path_.towards_eye(i - 2);

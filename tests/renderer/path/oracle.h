@@ -25,7 +25,7 @@ class Oracle {
   std::vector<double> weights(const SampleCounts& n, double next_event_ratio = 1) const;
 
  private:
-  double leaving(const V3f& w) const;
+  double pdf_Le(const V3f& w) const;
   double light_step(int i) const;
   double eye_step(int i) const;
   double product(int from_light, int from_eye) const;

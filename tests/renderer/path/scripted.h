@@ -140,7 +140,7 @@ class Remake {
     light_[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
     light_[0].surface.x = e.x;
     light_[0].surface.ng = e.ng;
-    PathState walker{.rng = rng_, .ray = {from, w}, .p = guide_.leaving_pdf(e, w), .path = light_};
+    PathState walker{.rng = rng_, .ray = {from, w}, .p = guide_.pdf_Le(e, w), .path = light_};
     if (!e.delta()) walker.mis_partial = counts_.hit / double(e.pdf.value);
     int reached = 0;
     trace_paths(std::span(&walker, 1), light_script_, s - 1, Transport::importance,

@@ -1,7 +1,7 @@
-// The first edge of light paths: directions and places follow leaving_pdf(), and what they carry is
+// The first edge of light paths: directions and places follow pdf_Le(), and what they carry is
 // the emitter's power.
 
-#include "renderer/emitters/leaving.h"
+#include "renderer/emitters/light_le_sample.h"
 
 #include <gtest/gtest.h>
 
@@ -50,20 +50,20 @@ double width_for(double angle) {
   return low;
 }
 
-/// Directions of `e` against leaving_pdf() of `claimed`; `angle` is where either jumps.
+/// Directions of `e` against pdf_Le() of `claimed`; `angle` is where either jumps.
 statistics::ChiSquare directions(const EmitterPoint& e, double angle, const EmitterPoint& claimed) {
   const statistics::SphereGrid grid(e.ng, width_for(angle));
   Rng rng(31, 0, 0, Rng::Purpose::test);
   return statistics::sphere_chi_square(
       std::span(&grid, 1), [](const V3f&) { return std::size_t{0}; }, 200000,
       [&]() -> std::optional<V3f> {
-        const auto l = sample_leaving(e, unit_box, rng);
+        const auto l = sample_Le(e, unit_box, rng);
         return l ? std::optional(l->ray.d) : std::nullopt;
       },
-      [&](const V3f& w) { return claimed.leaving_pdf(w).value; });
+      [&](const V3f& w) { return claimed.pdf_Le(w).value; });
 }
 
-TEST(Leaving, DirectionsFollowTheirDensity) {
+TEST(LightLeSample, DirectionsFollowTheirDensity) {
   EmitterPoint both = emitter(Kind::area);
   both.both_sides = true;
   const std::vector<std::tuple<const char*, EmitterPoint, double>> cases{
@@ -84,7 +84,7 @@ TEST(Leaving, DirectionsFollowTheirDensity) {
 }
 
 // Near the axis a cosine has few values in float: squared sines must have more.
-TEST(Leaving, ANarrowBeamHasNoRings) {
+TEST(LightLeSample, ANarrowBeamHasNoRings) {
   Rng rng(35, 0, 0, Rng::Purpose::test);
   for (const float outer : {1e-2F, 1e-3F, 1e-4F}) {
     const EmitterPoint e = spot(0, outer);
@@ -92,7 +92,7 @@ TEST(Leaving, ANarrowBeamHasNoRings) {
     std::vector<double> observed(cells), expected(cells, double(draws) / cells);
     const double widest = std::sin(double(outer)) * std::sin(double(outer));
     for (int i = 0; i < draws; ++i) {
-      const auto l = sample_leaving(e, unit_box, rng);
+      const auto l = sample_Le(e, unit_box, rng);
       // Where the ramp ends, nothing shines.
       const double share = l ? V3d(l->ray.d).cross(V3d(e.ng)).length2() / widest : 0.9999;
       ++observed[static_cast<std::size_t>(std::min(share, 0.9999) * cells)];
@@ -135,21 +135,21 @@ TEST(Spot, HasAHardEdgeWhereBothConesAreOne) {
       const double a = share * double(outer);
       const V3f w((axis * std::cos(a) + across * std::sin(a)).normalized());
       EXPECT_EQ(e.towards(w).x, share < 1 ? 1 : 0) << outer << ", " << share;
-      EXPECT_EQ(e.leaving_pdf(w).positive(), share < 1) << outer << ", " << share;
+      EXPECT_EQ(e.pdf_Le(w).positive(), share < 1) << outer << ", " << share;
     }
   }
 }
 
-TEST(Leaving, CarriesTheEmissionOverBothDensities) {
+TEST(LightLeSample, CarriesTheEmissionOverBothDensities) {
   EmitterPoint both = emitter(Kind::area);
   both.both_sides = true;
   Rng rng(32, 0, 0, Rng::Purpose::test);
   for (const EmitterPoint& e :
        {emitter(Kind::area), both, emitter(Kind::point), spot(0.2F, 0.6F)}) {
     for (int i = 0; i < 1000; ++i) {
-      const auto l = sample_leaving(e, unit_box, rng);
+      const auto l = sample_Le(e, unit_box, rng);
       if (!l) continue;
-      EXPECT_EQ(l->pdf.value, e.leaving_pdf(l->ray.d).value);
+      EXPECT_EQ(l->pdf.value, e.pdf_Le(l->ray.d).value);
       const float cosine = e.kind == Kind::area ? abs_dot(l->ray.d, e.ng) : 1;
       const Rgb expected = e.towards(l->ray.d) * cosine / (l->pdf.value * e.pdf.value);
       // The edge of a spot is as steep as the rounded direction lets it be known.
@@ -167,7 +167,7 @@ TEST(Leaving, CarriesTheEmissionOverBothDensities) {
 }
 
 // A spot's cone can be empty in floats: glTF allows any angle above 0.
-TEST(Leaving, NothingLeavesAnEmptyCone) {
+TEST(LightLeSample, NothingLeavesAnEmptyCone) {
   Rng rng(33, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < 20000; ++i) {
     const V2f u = rng.next2();
@@ -175,24 +175,24 @@ TEST(Leaving, NothingLeavesAnEmptyCone) {
     EmitterPoint e = emitter(Kind::spot, {r * std::cos(6.28F * u.y), r * std::sin(6.28F * u.y), z});
     e.ng = e.ng.normalized();  // its square may round to more than 1
     e.cones = SpotCones(0, 1e-30);
-    EXPECT_FALSE(sample_leaving(e, unit_box, rng));
-    EXPECT_FALSE(e.leaving_pdf(e.ng).positive());
+    EXPECT_FALSE(sample_Le(e, unit_box, rng));
+    EXPECT_FALSE(e.pdf_Le(e.ng).positive());
   }
 }
 
-TEST(Leaving, NothingLeavesWhatIsNeverDrawn) {
+TEST(LightLeSample, NothingLeavesWhatIsNeverDrawn) {
   Rng rng(34, 0, 0, Rng::Purpose::test);
   for (const Kind kind :
        {Kind::area, Kind::point, Kind::spot, Kind::directional, Kind::environment}) {
     EmitterPoint e = emitter(kind);
     e.across = 1;
-    EXPECT_TRUE(sample_leaving(e, unit_box, rng));
+    EXPECT_TRUE(sample_Le(e, unit_box, rng));
     e.pdf = Pdf<Area>(0);
-    EXPECT_FALSE(sample_leaving(e, unit_box, rng));
+    EXPECT_FALSE(sample_Le(e, unit_box, rng));
     e = emitter(kind);
     e.across = 1;
     e.emission = Rgb(0, 0, 0);
-    EXPECT_FALSE(sample_leaving(e, unit_box, rng));
+    EXPECT_FALSE(sample_Le(e, unit_box, rng));
   }
 }
 

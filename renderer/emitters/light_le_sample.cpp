@@ -1,4 +1,4 @@
-#include "renderer/emitters/leaving.h"
+#include "renderer/emitters/light_le_sample.h"
 
 #include "renderer/core/frame.h"
 #include "renderer/materials/lambert.h"
@@ -19,20 +19,21 @@ V3f everywhere(const V2f& u) { return around(V3f(0, 0, 1), 2 * u.x, u.y); }
 
 /// Sets the throughput of `l` for a point that emits `emitted`, cosine included; none if it is
 /// black.
-std::optional<Leaving> carrying(const Rgb& emitted, Leaving l, const EmitterPoint& e) {
+std::optional<LightLeSample> with_throughput(const Rgb& emitted, LightLeSample l,
+                                             const EmitterPoint& e) {
   if (is_black(emitted) || !l.pdf.positive() || !e.pdf.positive()) return std::nullopt;
   l.throughput = emitted / l.pdf.value / e.pdf.value;
   return l;
 }
 
-std::optional<Leaving> leaving_spot(const EmitterPoint& e, Rng& rng) {
+std::optional<LightLeSample> sample_spot(const EmitterPoint& e, Rng& rng) {
   const V2f u = rng.next2();
   const float x = e.cones.sample(u.x);
   // Falloff from the sampled angle: at the edge of a narrow cone, the rounded direction may lie
   // outside.
   const V3f w = around(e.ng, x, u.y);
-  return carrying(e.emission * e.cones.falloff(x), {.ray = {e.origin(w), w}, .pdf = e.cones.pdf()},
-                  e);
+  return with_throughput(e.emission * e.cones.falloff(x),
+                         {.ray = {e.origin(w), w}, .pdf = e.cones.pdf()}, e);
 }
 
 /// A point on the sides of `box` that face unit `w`, uniform in projected area.
@@ -51,7 +52,7 @@ V3d sample_silhouette(const Bounds& box, const V3f& w, Rng& rng) {
   return p;
 }
 
-Ray leaving_infinity(const V3f& to_light, const Bounds& scene, Rng& rng) {
+Ray ray_from_infinity(const V3f& to_light, const Bounds& scene, Rng& rng) {
   // Start beyond the box by its radius, so that the ray also hits surfaces on its sides.
   const V3d from = sample_silhouette(scene, to_light, rng) + V3d(to_light) * scene.radius();
   return {V3f(from), -to_light};
@@ -59,8 +60,8 @@ Ray leaving_infinity(const V3f& to_light, const Bounds& scene, Rng& rng) {
 
 }  // namespace
 
-std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene, Rng& rng) {
-  Leaving l;
+std::optional<LightLeSample> sample_Le(const EmitterPoint& e, const Bounds& scene, Rng& rng) {
+  LightLeSample l;
   float cosine = 1;
   switch (e.kind) {
     case EmitterPoint::Kind::area: {
@@ -76,13 +77,13 @@ std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene
       break;
     }
     case EmitterPoint::Kind::spot:
-      return leaving_spot(e, rng);
+      return sample_spot(e, rng);
     default:
       if (!(e.across > 0)) return std::nullopt;
-      l.ray = leaving_infinity(e.x, scene, rng);
+      l.ray = ray_from_infinity(e.x, scene, rng);
   }
-  l.pdf = e.leaving_pdf(l.ray.d);
-  return carrying(e.towards(l.ray.d) * cosine, l, e);
+  l.pdf = e.pdf_Le(l.ray.d);
+  return with_throughput(e.towards(l.ray.d) * cosine, l, e);
 }
 
 }  // namespace lacuna

@@ -10,9 +10,9 @@
 namespace lacuna {
 
 /// The first edge of a light path.
-struct Leaving {
+struct LightLeSample {
   Ray ray;
-  Pdf<SolidAngle> pdf{};    ///< EmitterPoint::leaving_pdf() in the ray's direction
+  Pdf<SolidAngle> pdf{};    ///< EmitterPoint::pdf_Le() in the ray's direction
   Rgb throughput{0, 0, 0};  ///< emission times cosine over the densities of point and direction
 };
 
@@ -20,6 +20,6 @@ struct Leaving {
 /// uniform over directions from a point light, uniform in the cone of a spot light, and from
 /// infinity uniform over the silhouette of the scene's bounding box, so that every ray of a
 /// directional light enters the box. None if `e` emits nothing in the sampled direction.
-std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene, Rng& rng);
+std::optional<LightLeSample> sample_Le(const EmitterPoint& e, const Bounds& scene, Rng& rng);
 
 }  // namespace lacuna
