@@ -82,8 +82,8 @@ class Bsdf {
     return eval_any(wo, wi, transport);
   }
 
-  /// Whether eval() of radiance is equal towards `a` and `b`, for every direction of incidence.
-  bool same_for_all(const V3f& a, const V3f& b) const {
+  /// Whether eval(wo, wi, radiance) is the same for wo = `a` and wo = `b`, for every wi.
+  bool is_constant_in_wo(const V3f& a, const V3f& b) const {
     return lobes_.kind == Lobes::Kind::lambert && flat_ && dot(a, ng_) * dot(b, ng_) > 0;
   }
 

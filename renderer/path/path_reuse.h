@@ -154,7 +154,7 @@ class PathReuse {
       const double density = is_black(value) ? from.pdf(c.w) : from.pdf(c.w, bsdf);
       if (!(density > 0)) continue;
       Edge e{.pixel = pixel_of_[k]};
-      if (!v.bsdf->same_for_all(v.wp, -c.w)) {
+      if (!v.bsdf->is_constant_in_wo(v.wp, -c.w)) {
         e.scattered = scattered(j, -c.w);
         if (is_black(e.scattered.near) && is_black(e.scattered.far)) continue;
       } else {
