@@ -90,7 +90,7 @@ void VplContributions::diffuse_terms(const ShadingPoint& at, const DiffuseBlock&
     if (any(above)) t = select(above, t * bound / geometric, t);  // bounded_share()
     // At the light's own position everything is NaN and all comparisons are false.
     t = keep_where(over_d2 > 0, t);
-    const Float8x3 f = at.seen.eval(w);
+    const Float8x3 f = at.bsdf.eval(w);
     out.r.set(k, f.x * from.r.eight(k) * t);
     out.g.set(k, f.y * from.g.eight(k) * t);
     out.b.set(k, f.z * from.b.eight(k) * t);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/many_lights/vpl_set.h"
-#include "renderer/materials/bsdf_seen.h"
+#include "renderer/materials/bsdf_at_wo.h"
 #include "renderer/path/connect.h"
 #include "renderer/path/guide.h"
 
@@ -17,7 +17,7 @@ struct ShadingPoint {
   int depth = 0;   ///< edges from the eye
   int edges = -1;  ///< largest number of edges of the lights' paths; < 0: no lights
   std::uint32_t pixel = 0;
-  BsdfSeen seen;    ///< its factor is the path's throughput
+  BsdfAtWo bsdf;    ///< its factor is the path's throughput
   float scale = 0;  ///< luminance of throughput times albedo: contributions are proportional to it
 
   ShadingPoint(const Vertex& v, int edges_from_eye, int most_edges, std::uint32_t at)
@@ -25,9 +25,9 @@ struct ShadingPoint {
         depth(edges_from_eye),
         edges(most_edges),
         pixel(at),
-        seen(*v.bsdf, v.wp),
+        bsdf(*v.bsdf, v.wp),
         scale(luminance(v.throughput * v.bsdf->albedo())) {
-    seen.factor *= v.throughput;
+    bsdf.factor *= v.throughput;
   }
 };
 

@@ -146,7 +146,7 @@ class Bsdf {
   Rgb albedo() const;
 
  private:
-  friend class BsdfSeen;
+  friend class BsdfAtWo;
 
   /// Probabilities of the lobes for one wo; they sum to 1, or are all 0.
   struct Choice {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cases.h"
-#include "renderer/materials/bsdf_seen.h"
+#include "renderer/materials/bsdf_at_wo.h"
 
 namespace lacuna {
 namespace {
@@ -28,7 +28,7 @@ TEST_P(Eight, AreTheBsdfOfEach) {
     for (int n = 0; n < 300; ++n) {
       const V3f wo = cases::uniform_direction(random);
       if (bsdf.transmits()) return;
-      const BsdfSeen eight(bsdf, wo);
+      const BsdfAtWo eight(bsdf, wo);
       alignas(32) std::array<float, 8> x, y, z;
       std::array<V3f, 8> w;
       for (std::size_t i = 0; i < 8; ++i) {

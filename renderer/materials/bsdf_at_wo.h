@@ -6,21 +6,21 @@
 namespace lacuna {
 
 /// An opaque BSDF with a fixed wo, evaluated for eight directions wi at once.
-class BsdfSeen {
+class BsdfAtWo {
  public:
   /// `bsdf` must not transmit.
-  BsdfSeen(const Bsdf& bsdf, const V3f& wo);
+  BsdfAtWo(const Bsdf& bsdf, const V3f& wo);
 
   /// Bsdf::eval(wo, w, Transport::radiance) for unit `w`, times `factor`.
   Float8x3 eval(const Float8x3& w) const {
     const Float8 cos_i = w.x * n_.x + w.y * n_.y + w.z * n_.z;
     const Float8 side = w.x * side_.x + w.y * side_.y + w.z * side_.z;
-    const Mask8 seen = side > 0 && cos_i > 0;
+    const Mask8 reflected = side > 0 && cos_i > 0;
     if (layered_) {
-      const Float8x3 f = keep_where(seen, layered(w, cos_i));
+      const Float8x3 f = keep_where(reflected, layered(w, cos_i));
       return {f.x * factor.x, f.y * factor.y, f.z * factor.z};
     }
-    const Float8 cosine = keep_where(seen, cos_i);
+    const Float8 cosine = keep_where(reflected, cos_i);
     const Rgb f = diffuse_ * factor;
     return {f.x * cosine, f.y * cosine, f.z * cosine};
   }

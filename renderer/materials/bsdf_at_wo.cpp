@@ -1,8 +1,8 @@
-#include "renderer/materials/bsdf_seen.h"
+#include "renderer/materials/bsdf_at_wo.h"
 
 namespace lacuna {
 
-BsdfSeen::BsdfSeen(const Bsdf& bsdf, const V3f& wo)
+BsdfAtWo::BsdfAtWo(const Bsdf& bsdf, const V3f& wo)
     : wo_(wo),
       side_(dot(wo, bsdf.ng_) < 0 ? -bsdf.ng_ : bsdf.ng_),
       n_(bsdf.eye_normal(wo, dot(wo, bsdf.ng_))),
@@ -16,13 +16,13 @@ BsdfSeen::BsdfSeen(const Bsdf& bsdf, const V3f& wo)
   if (layered_) through_o_ = layer_.let_through(layer_.mean_weight(cos_o_));
 }
 
-Float8x3 BsdfSeen::layered(const Float8x3& w, Float8 cos_i) const {
+Float8x3 BsdfAtWo::layered(const Float8x3& w, Float8 cos_i) const {
   const Float8 scale = cos_i * layer_.scale(through_o_, layer_.let_through(means_.at(cos_i)));
   const Float8x3 base{diffuse_.x * scale, diffuse_.y * scale, diffuse_.z * scale};
   return interface_.smooth() ? base : base + facets(w, cos_i);
 }
 
-Float8x3 BsdfSeen::facets(const Float8x3& w, Float8 cos_i) const {
+Float8x3 BsdfAtWo::facets(const Float8x3& w, Float8 cos_i) const {
   const Float8x3 h = w + Float8x3{wo_.x, wo_.y, wo_.z};
   const Float8 length = sqrt(length2(h));
   const Float8x3 m = h * (1 / length);
