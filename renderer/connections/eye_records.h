@@ -28,19 +28,19 @@ class EyeRecords {
   std::size_t size() const { return records_.size(); }
   const Record& operator[](std::size_t i) const { return records_[i]; }
 
-  /// The records used by an eye vertex.
-  struct Near {
+  /// The records nearest to an eye vertex.
+  struct Neighbours {
     static constexpr std::size_t most = 64;
-    std::uint32_t cell =
-        0;  ///< of CellStatistics: a single one, as records change in each iteration
+    /// For CellStatistics: one cell for all vertices, because records change in each iteration.
+    std::uint32_t cell = 0;
     std::size_t n = 0;
-    std::array<std::uint32_t, most> near{};  ///< indices of the n nearest records
+    std::array<std::uint32_t, most> index{};  ///< of the n records, for operator[]
   };
   /// The nearest `neighbours` records, or all if there are fewer. Requires neighbours <=
-  /// Near::most.
-  Near nearest(const Vertex& v, int neighbours) const {
-    Near found;
-    const auto wanted = std::span(found.near).first(static_cast<std::size_t>(neighbours));
+  /// Neighbours::most.
+  Neighbours nearest(const Vertex& v, int neighbours) const {
+    Neighbours found;
+    const auto wanted = std::span(found.index).first(static_cast<std::size_t>(neighbours));
     found.n = tree_.nearest(surface_point(v), wanted);
     return found;
   }

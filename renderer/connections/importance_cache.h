@@ -30,13 +30,13 @@ class ImportanceCacheConnections : public StrategyBase {
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
              Counters& counters);
 
-  struct CellLookup : EyeRecords::Near {
+  struct CellLookup : EyeRecords::Neighbours {
     const ResamplingCell* drawn = nullptr;  ///< of one of the nearest records, selected at random
   };
   CellLookup find(const Vertex& v, int /*depth*/, Rng& rng) const {
     CellLookup lookup{records_.nearest(v, settings_.neighbours)};
     if (lookup.n > 0) {
-      lookup.drawn = &cells_of_records_[lookup.near[rng.below(lookup.n)]];
+      lookup.drawn = &cells_of_records_[lookup.index[rng.below(lookup.n)]];
     }
     return lookup;
   }
@@ -56,7 +56,7 @@ class ImportanceCacheConnections : public StrategyBase {
           const std::uint32_t i = lookup.drawn->table(s).resolve(chosen, rng).index;
           float sum = 0;
           for (std::size_t k = 0; k < lookup.n; ++k) {
-            sum += cells_of_records_[lookup.near[k]].table(s).pmf(i).value;
+            sum += cells_of_records_[lookup.index[k]].table(s).pmf(i).value;
           }
           return VertexSample{i, sum / static_cast<float>(lookup.n),
                               lookup.drawn->table(s).distribution(i)};

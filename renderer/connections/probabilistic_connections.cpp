@@ -74,7 +74,7 @@ JointDistribution::Draw ProbabilisticConnections::draw(const CellLookup& lookup,
   if (lookup.n == 0 || rng.decide(static_cast<float>(settings_.uniform))) {
     return uniform_draw(longest, rng);
   }
-  const JointDistribution& joint = joint_of_records_[lookup.near[rng.below(lookup.n)]];
+  const JointDistribution& joint = joint_of_records_[lookup.index[rng.below(lookup.n)]];
   return joint.empty(longest) ? uniform_draw(longest, rng) : joint.sample(longest, rng);
 }
 
@@ -85,7 +85,7 @@ VertexSample ProbabilisticConnections::probability(const CellLookup& lookup, int
   double uniform = lookup.n == 0 ? 1 : double(static_cast<float>(settings_.uniform));
   const double each = lookup.n == 0 ? 0 : (1 - uniform) / static_cast<double>(lookup.n);
   for (std::size_t k = 0; k < lookup.n; ++k) {
-    const JointDistribution& joint = joint_of_records_[lookup.near[k]];
+    const JointDistribution& joint = joint_of_records_[lookup.index[k]];
     if (joint.empty(longest)) {
       uniform += each;
     } else {

@@ -70,7 +70,7 @@ class ProbabilisticConnections : public StrategyBase {
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
              Counters& counters);
 
-  using CellLookup = EyeRecords::Near;
+  using CellLookup = EyeRecords::Neighbours;
   CellLookup find(const Vertex& v, int /*depth*/, Rng&) const {
     return records_.nearest(v, settings_.neighbours);
   }

@@ -160,47 +160,49 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
   scales_[point] = double(at.scale);
 }
 
-CachePoints::Near CachePoints::near(const ShadingPoint& at) const {
-  Near near;
+CachePoints::Neighbours CachePoints::nearest(const ShadingPoint& at) const {
+  Neighbours neighbours;
   const SurfacePoint point = surface_point(*at.vertex);
-  near.n = static_cast<int>(
-      tree_.nearest(point, std::span(near.index).first(static_cast<std::size_t>(neighbours_))));
+  neighbours.n = static_cast<int>(tree_.nearest(
+      point, std::span(neighbours.index).first(static_cast<std::size_t>(neighbours_))));
   // Weights are inversely proportional to RecordTree::rank() (Clarberg and Akenine-Moeller
   // 2008).
   std::array<float, max_neighbours> rank{};
   float farthest = 0;
-  const auto n = static_cast<std::size_t>(near.n);
+  const auto n = static_cast<std::size_t>(neighbours.n);
   for (std::size_t j = 0; j < n; ++j) {
-    rank[j] = RecordTree::rank(point, points_[near.index[j]]);
+    rank[j] = RecordTree::rank(point, points_[neighbours.index[j]]);
     farthest = std::max(farthest, rank[j]);
   }
   float total = 0;
   for (std::size_t j = 0; j < n; ++j) {
-    near.weight[j] = farthest > 0 ? farthest / std::max(rank[j], least_rank * farthest) : 1.0F;
-    total += near.weight[j];
+    neighbours.weight[j] =
+        farthest > 0 ? farthest / std::max(rank[j], least_rank * farthest) : 1.0F;
+    total += neighbours.weight[j];
   }
-  for (std::size_t j = 0; j < n; ++j) near.weight[j] /= total;
-  return near;
+  for (std::size_t j = 0; j < n; ++j) neighbours.weight[j] /= total;
+  return neighbours;
 }
 
-float CachePoints::deviation(const ShadingPoint& at, const Near& near) const {
+float CachePoints::deviation(const ShadingPoint& at, const Neighbours& neighbours) const {
   double variance = 0;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
-    variance += double(near.weight[j]) * variances_[near.index[j]];
+  for (std::size_t j = 0; j < static_cast<std::size_t>(neighbours.n); ++j) {
+    variance += double(neighbours.weight[j]) * variances_[neighbours.index[j]];
   }
   return static_cast<float>(std::sqrt(variance) * double(at.scale));
 }
 
-std::uint64_t CachePoints::expected(const Near& near, std::size_t block, Lanes& q) const {
+std::uint64_t CachePoints::expected(const Neighbours& neighbours, std::size_t block,
+                                    Lanes& q) const {
   std::uint64_t any_tested = 0;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
-    any_tested |= visibility_[near.index[j] * blocks_ + block].tested;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(neighbours.n); ++j) {
+    any_tested |= visibility_[neighbours.index[j] * blocks_ + block].tested;
   }
   for (int k = 0; k < Lanes::groups; ++k) {
     Float8 visible, tested;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
-      const VisibilityBits& stored = visibility_[near.index[j] * blocks_ + block];
-      const Float8 weight = near.weight[j];
+    for (std::size_t j = 0; j < static_cast<std::size_t>(neighbours.n); ++j) {
+      const VisibilityBits& stored = visibility_[neighbours.index[j] * blocks_ + block];
+      const Float8 weight = neighbours.weight[j];
       visible = visible + weight * Float8::load(bytes.of[stored.visible >> (8 * k) & 0xff].data());
       tested = tested + weight * Float8::load(bytes.of[stored.tested >> (8 * k) & 0xff].data());
     }

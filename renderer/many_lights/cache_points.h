@@ -49,22 +49,22 @@ class CachePoints {
   Counters build(const LightPass& pass);
 
   /// The nearest cache points of a shading point.
-  struct Near {
+  struct Neighbours {
     int n = 0;
     std::array<std::uint32_t, max_neighbours> index{};
     std::array<float, max_neighbours> weight{};  ///< sum is 1
   };
-  Near near(const ShadingPoint& at) const;
+  Neighbours nearest(const ShadingPoint& at) const;
 
   /// Standard deviation of the lights' contributions (luminance, with visibility) to `at`; 0 if
   /// there is no cache point.
-  float deviation(const ShadingPoint& at, const Near& near) const;
+  float deviation(const ShadingPoint& at, const Neighbours& neighbours) const;
   /// The root mean square of the deviation over the picture.
   float deviation() const { return static_cast<float>(std::sqrt(picture_variance_)); }
   /// q: the weighted mean visibility of each light of `block` over the nearest points at which it
   /// was tested: with CacheLights::lit, those at which the light has a contribution. Returns a mask
   /// of the lights tested at some point; q of the others is 0. Requires Keep::visibilities.
-  std::uint64_t expected(const Near& near, std::size_t block, Lanes& q) const;
+  std::uint64_t expected(const Neighbours& neighbours, std::size_t block, Lanes& q) const;
 
   std::size_t size() const { return variances_.size(); }
   /// For the report.

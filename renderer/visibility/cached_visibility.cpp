@@ -11,20 +11,20 @@ Counters ProbabilisticVisibility::begin(const LightPass& pass) {
 
 ProbabilisticVisibility::At ProbabilisticVisibility::at(const ShadingPoint& point,
                                                         const IterationContext& context) const {
-  const CachePoints::Near near = points_.near(point);
-  return {
-      near,
-      {.k = other_rays_ + static_cast<float>(settings_.term_cost),
-       .c = 1,
-       .least = static_cast<float>(settings_.epsilon_probability),
-       .over_sigma = 1 / (settings_.variance == VarianceOf::point ? points_.deviation(point, near)
-                                                                  : points_.deviation())},
-      {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
+  const CachePoints::Neighbours neighbours = points_.nearest(point);
+  return {neighbours,
+          {.k = other_rays_ + static_cast<float>(settings_.term_cost),
+           .c = 1,
+           .least = static_cast<float>(settings_.epsilon_probability),
+           .over_sigma =
+               1 / (settings_.variance == VarianceOf::point ? points_.deviation(point, neighbours)
+                                                            : points_.deviation())},
+          {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
 }
 
 void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& terms,
                                      VisibilityEstimate& d) const {
-  const std::uint64_t tested = points_.expected(at.near, block, d.untested);  // q
+  const std::uint64_t tested = points_.expected(at.neighbours, block, d.untested);  // q
   const auto least = static_cast<float>(settings_.epsilon_variance);
   constexpr float unknown =
       std::numeric_limits<float>::infinity();  // lights of unknown visibility are tested

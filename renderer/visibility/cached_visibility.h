@@ -19,7 +19,7 @@ class ProbabilisticVisibility : public VisibilityBase {
 
   Counters begin(const LightPass& pass);
   struct At {
-    CachePoints::Near near;
+    CachePoints::Neighbours neighbours;
     TestProbability chance;
     Rng rng;
   };
@@ -43,12 +43,14 @@ class InterpolatedVisibility : public VisibilityBase {
 
   Counters begin(const LightPass& pass) { return points_.build(pass); }
   struct At {
-    CachePoints::Near near;
+    CachePoints::Neighbours neighbours;
   };
-  At at(const ShadingPoint& point, const IterationContext&) const { return {points_.near(point)}; }
+  At at(const ShadingPoint& point, const IterationContext&) const {
+    return {points_.nearest(point)};
+  }
   void decide(At& at, std::size_t block, const Terms&, VisibilityEstimate& d) const {
     d.tests = 0;
-    points_.expected(at.near, block, d.untested);
+    points_.expected(at.neighbours, block, d.untested);
   }
   std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
 

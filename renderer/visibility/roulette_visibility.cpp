@@ -17,7 +17,7 @@ RouletteVisibility::At RouletteVisibility::at(const ShadingPoint& point,
            .c = derived ? 1.0F : 0.0F,
            .least = static_cast<float>(settings_.epsilon_probability),
            .over_sigma = 1 / (settings_.variance == VarianceOf::point
-                                  ? points_.deviation(point, points_.near(point))
+                                  ? points_.deviation(point, points_.nearest(point))
                                   : points_.deviation())},
           {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
 }

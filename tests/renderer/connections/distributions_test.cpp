@@ -261,13 +261,13 @@ void expect_records(const ConnectedScene& scene, const ImportanceCacheSettings& 
   ASSERT_GT(records.size(), 2 * neighbours);
   for (std::size_t r = 0; r < records.size(); r += 2) {
     const auto lookup = connections.find(records[r].vertex, 1, rng);
-    const EyeRecords::Near near = records.nearest(records[r].vertex, settings.neighbours);
-    ASSERT_EQ(near.n, neighbours);
-    for (std::size_t k = 0; k < near.n; ++k) {
-      auto& of_record = tables[near.near[k]];
+    const EyeRecords::Neighbours nearest = records.nearest(records[r].vertex, settings.neighbours);
+    ASSERT_EQ(nearest.n, neighbours);
+    for (std::size_t k = 0; k < nearest.n; ++k) {
+      auto& of_record = tables[nearest.index[k]];
       for (int s = static_cast<int>(of_record.size()) + 1; s <= longest; ++s) {
         of_record.push_back(combined(ImportanceCacheConnections::distributions,
-                                     at_record(scene, settings, records[near.near[k]], s),
+                                     at_record(scene, settings, records[nearest.index[k]], s),
                                      settings.combination));
       }
     }
@@ -277,9 +277,9 @@ void expect_records(const ConnectedScene& scene, const ImportanceCacheSettings& 
           [&](int s, const VertexSample& drawn) {
             double p = 0;
             bool is_owned = false;  // by that distribution, at one of the records
-            for (std::size_t k = 0; k < near.n; ++k) {
-              const ResamplingTable& t = tables[near.near[k]][static_cast<std::size_t>(s) - 1];
-              p += double(t.pmf(drawn.index).value) / static_cast<double>(near.n);
+            for (std::size_t k = 0; k < nearest.n; ++k) {
+              const ResamplingTable& t = tables[nearest.index[k]][static_cast<std::size_t>(s) - 1];
+              p += double(t.pmf(drawn.index).value) / static_cast<double>(nearest.n);
               is_owned = is_owned || drawn.distribution == t.distribution(drawn.index);
             }
             EXPECT_NEAR(drawn.probability, p, 1e-6 * p);

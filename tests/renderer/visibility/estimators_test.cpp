@@ -209,7 +209,7 @@ TEST(Estimators, TestLightsThatNoCachePointKnows) {
       Lanes q;
       for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
         lit.terms().evaluate(p, b, terms);
-        const std::uint64_t unknown = terms.lit & ~cache.expected(cache.near(p), b, q);
+        const std::uint64_t unknown = terms.lit & ~cache.expected(cache.nearest(p), b, q);
         EXPECT_EQ(tests[b] & unknown, unknown);
         unknown_lights += static_cast<std::uint64_t>(__builtin_popcountll(unknown));
       }
@@ -226,15 +226,15 @@ TEST(CachePoints, KnowWhatTheySee) {
   cache.build(lit.pass(context));
   lit.with_points(200, [&](std::span<const ShadingPoint> points) {
     for (const ShadingPoint& p : points) {
-      const CachePoints::Near near = cache.near(p);
-      ASSERT_EQ(near.n, 1);
-      EXPECT_EQ(near.weight[0], 1);
+      const CachePoints::Neighbours neighbours = cache.nearest(p);
+      ASSERT_EQ(neighbours.n, 1);
+      EXPECT_EQ(neighbours.weight[0], 1);
       Terms terms;
       Lanes q;
       double sum = 0, sum2 = 0;
       for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
         lit.terms().evaluate(p, b, terms);
-        EXPECT_EQ(cache.expected(near, b, q), terms.lit);
+        EXPECT_EQ(cache.expected(neighbours, b, q), terms.lit);
         for (int i = 0; i < Lanes::size; ++i) {
           const bool seen =
               (terms.lit >> i & 1) != 0 && !lit.scene().rays().occluded(lit.terms().ray(p, b, i));
@@ -245,7 +245,7 @@ TEST(CachePoints, KnowWhatTheySee) {
       }
       const auto n = static_cast<double>(lit.lights().size());
       const double deviation = std::sqrt(std::max(0.0, sum2 / n - sum / n * (sum / n)));
-      EXPECT_NEAR(double(cache.deviation(p, near)), deviation, 1e-4 * deviation + 1e-12);
+      EXPECT_NEAR(double(cache.deviation(p, neighbours)), deviation, 1e-4 * deviation + 1e-12);
     }
   });
 }
@@ -261,15 +261,15 @@ TEST(CachePoints, KnowAllLightsIfTheyTestThem) {
   int along = 0, visible = 0;
   lit.with_points(200, [&](std::span<const ShadingPoint> points) {
     for (const ShadingPoint& p : points) {
-      const CachePoints::Near near = cache.near(p);
-      EXPECT_EQ(cache.deviation(p, near), only_lit.deviation(p, only_lit.near(p)));
+      const CachePoints::Neighbours neighbours = cache.nearest(p);
+      EXPECT_EQ(cache.deviation(p, neighbours), only_lit.deviation(p, only_lit.nearest(p)));
       const V3f n = p.vertex->side(), x = p.vertex->surface.x;
       Terms terms;
       Lanes q, q_lit;
       for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
         lit.terms().evaluate(p, b, terms);
-        EXPECT_EQ(cache.expected(near, b, q), lit.lights().mask(b));
-        only_lit.expected(near, b, q_lit);
+        EXPECT_EQ(cache.expected(neighbours, b, q), lit.lights().mask(b));
+        only_lit.expected(neighbours, b, q_lit);
         for (int i = 0; i < lit.lights().count(b); ++i) {
           if ((terms.lit >> i & 1) != 0) {
             EXPECT_EQ(q[i], q_lit[i]);
