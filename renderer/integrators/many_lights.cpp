@@ -68,9 +68,9 @@ class ManyLights final : public Integrator {
     lights_ = static_cast<double>(lights.size());
     passes.begin("visibility", seconds_.visibility);
     const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
-    std::optional<LightDraw> draw;
+    std::optional<VplSampler> sampler;
     std::optional<LightFilter> filter;
-    if (random()) draw.emplace(terms, *random());
+    if (random()) sampler.emplace(terms, *random());
     if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
     for (const BlockRange& range : visibility_.passes(lights)) {
       passes.begin("visibility", seconds_.visibility);
@@ -84,10 +84,11 @@ class ManyLights final : public Integrator {
              .sampled = random() ? std::size_t(random()->lights) : ~std::size_t{0}});
       }
       passes.begin("eye paths", seconds_.eye);
-      counters += gather(
-          context, {terms, draw ? &*draw : nullptr, filter ? &*filter : nullptr, range}, image);
+      counters +=
+          gather(context,
+                 {terms, sampler ? &*sampler : nullptr, filter ? &*filter : nullptr, range}, image);
     }
-    if (draw) culled_ = draw->culled();
+    if (sampler) culled_ = sampler->culled();
     if (filter) counters += add_filtered(context, *filter, image);
     return counters;
   }
@@ -111,7 +112,7 @@ class ManyLights final : public Integrator {
   /// The data that all tiles of a picture share.
   struct Gathering {
     const VplContributions& terms;
-    LightDraw* draw;      // null: all lights
+    VplSampler* sampler;  // null: all lights
     LightFilter* filter;  // null: none
     BlockRange range;     // of this pass; what does not come from lights is added in the first
   };
@@ -352,7 +353,7 @@ Counters ManyLights<V>::gather(const IterationContext& context, const Gathering&
   const auto make = [&] {
     return std::make_unique<Part>(
         EyeBatch(settings_.max_depth),
-        LightGather<V>(context, with.terms, visibility_, {with.draw, with.range}));
+        LightGather<V>(context, with.terms, visibility_, {with.sampler, with.range}));
   };
   return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
     parts.with(make, [&](Part& part) {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "renderer/many_lights/light_draw.h"
 #include "renderer/many_lights/visibility_estimate.h"
 #include "renderer/many_lights/vpl_contributions.h"
+#include "renderer/many_lights/vpl_sampler.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/shadow_queue.h"
 
@@ -16,8 +16,8 @@ struct LightSum {
 
 /// The virtual lights to gather.
 struct GatheredLights {
-  LightDraw* draw = nullptr;  ///< samples them; null: all
-  BlockRange range = {};      ///< only those of these blocks
+  VplSampler* sampler = nullptr;  ///< null: all of them
+  BlockRange range = {};          ///< only those of these blocks
 };
 
 /// Sums the contributions of all virtual lights, or of the sampled ones, to the shading points of a
@@ -31,7 +31,7 @@ class LightGather {
       : context_(context),
         terms_(terms),
         visibility_(visibility),
-        draw_(gathered.draw),
+        sampler_(gathered.sampler),
         range_(gathered.range) {}
 
   /// Writes the sum of `points[i]` to `sums[i]`, for at most Lanes::size points. Throws
@@ -39,8 +39,8 @@ class LightGather {
   void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums, Counters& counters) {
     states_.clear();
     for (const ShadingPoint& p : points) states_.push_back(visibility_.at(p, context_));
-    if (draw_ != nullptr) {
-      gather_drawn(points, sums, counters);
+    if (sampler_ != nullptr) {
+      gather_sampled(points, sums, counters);
     } else {
       gather_all(points, sums, counters);
     }
@@ -79,14 +79,14 @@ class LightGather {
     }
   }
 
-  void gather_drawn(std::span<const ShadingPoint> points, std::span<LightSum> sums,
-                    Counters& counters) {
-    const std::vector<LightDraw::Drawn> drawn = draw_->draw(points, context_);
-    for (std::size_t k = 0; k < drawn.size(); ++k) {
-      const LightDraw::Drawn& d = drawn[k];
-      if (!range_.contains(d.block)) continue;
-      add(points[d.point], d, sums[d.point], counters);
-      if (k + 1 == drawn.size() || drawn[k + 1].block != d.block) end_block(sums, counters);
+  void gather_sampled(std::span<const ShadingPoint> points, std::span<LightSum> sums,
+                      Counters& counters) {
+    const std::vector<VplSampler::Sample> samples = sampler_->sample(points, context_);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const VplSampler::Sample& s = samples[k];
+      if (!range_.contains(s.block)) continue;
+      add(points[s.point], s, sums[s.point], counters);
+      if (k + 1 == samples.size() || samples[k + 1].block != s.block) end_block(sums, counters);
     }
   }
 
@@ -96,12 +96,12 @@ class LightGather {
     if (++blocks_ % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
   }
 
-  void add(const ShadingPoint& at, const LightDraw::Drawn& drawn, LightSum& sum,
+  void add(const ShadingPoint& at, const VplSampler::Sample& sample, LightSum& sum,
            Counters& counters) {
-    const std::size_t block = drawn.block;
-    typename Visibility::At& state = states_[drawn.point];
+    const std::size_t block = sample.block;
+    typename Visibility::At& state = states_[sample.point];
     if (visibility_.hides(state, block)) return;
-    terms_.evaluate(at, block, term_, drawn.lights, drawn.weight);
+    terms_.evaluate(at, block, term_, sample.lights, sample.weight);
     counters.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
     if (term_.lit == 0) return;
     visibility_.decide(state, block, term_, decision_);
@@ -112,7 +112,7 @@ class LightGather {
       tests_[static_cast<std::size_t>(i)].push_back(
           {terms_.ray(at, block, i),
            {Rgb(term_.r[i], term_.g[i], term_.b[i]) * decision_.gain[i],
-            static_cast<std::uint32_t>(drawn.point)}});
+            static_cast<std::uint32_t>(sample.point)}});
     });
     sum.tests += static_cast<std::uint64_t>(__builtin_popcountll(decision_.tests));
   }
@@ -133,7 +133,7 @@ class LightGather {
   const IterationContext& context_;
   const VplContributions& terms_;
   const Visibility& visibility_;
-  LightDraw* draw_;
+  VplSampler* sampler_;
   BlockRange range_;
   std::size_t blocks_ = 0;                            // processed
   std::vector<typename Visibility::At> states_;       // of each point

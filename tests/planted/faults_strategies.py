@@ -201,12 +201,12 @@ FAULTS = [
           "bound > Float8(radius * size) * distance);", "bound > Float8(radius * size / 8) * distance);"),
     Fault("maps are handed down with their parent's distances", "renderer/view_maps/view_rendering.cpp",
           "sqrt(length2(s + w * depth))", "sqrt(length2(s * Float8(0.0F) + w * depth))"),
-    # Lights drawn for each shading point.
-    Fault("drawn lights count once", "renderer/many_lights/light_draw.cpp",
+    # Lights sampled for each shading point.
+    Fault("sampled lights count once", "renderer/many_lights/vpl_sampler.cpp",
           "static_cast<float>(step)});", "1.0F});"),
-    Fault("draws start at the first light", "renderer/many_lights/light_draw.cpp",
+    Fault("samples start at the first light", "renderer/many_lights/vpl_sampler.cpp",
           "const double u = (double(rng.next_u32()) + 0.5) * 0x1p-32 * step;", "const double u = 0 * double(rng.next_u32());"),
-    Fault("a stretch has the bounds of its last block", "renderer/many_lights/light_draw.cpp",
+    Fault("a stretch has the bounds of its last block", "renderer/many_lights/vpl_sampler.cpp",
           "if (diffuse) stretches_.back().bounds.add(lights.bounds(b));",
           "if (diffuse) stretches_.back().bounds = lights.bounds(b);"),
     Fault("point lights shine by a cosine", "renderer/many_lights/vpl_contributions.cpp",

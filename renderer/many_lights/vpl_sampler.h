@@ -15,14 +15,14 @@ namespace lacuna {
 /// Blocks contain lights of similar position and normal. A stretch of consecutive blocks with
 /// common bounds corresponds to a coarse node in the paper's hierarchy. The lights of the stretches
 /// that are not culled are sampled at equal steps from a random start (systematic sampling).
-class LightDraw {
+class VplSampler {
  public:
   /// `terms` must outlive this. The lights are divided into about `most_stretches` stretches.
-  LightDraw(const VplContributions& terms, const RandomLightsSettings& settings,
-            std::size_t most_stretches = 1024);
+  VplSampler(const VplContributions& terms, const RandomLightsSettings& settings,
+             std::size_t most_stretches = 1024);
 
   /// The lights of one block sampled for one shading point.
-  struct Drawn {
+  struct Sample {
     std::size_t block;
     std::size_t point;     ///< index of the shading point
     std::uint64_t lights;  ///< mask
@@ -30,9 +30,9 @@ class LightDraw {
   };
   /// Samples lights for at most Lanes::size `points`; the result is sorted by block, then by point.
   /// Counts pairs for culled(). Thread-safe.
-  std::vector<Drawn> draw(std::span<const ShadingPoint> points, const IterationContext& context);
+  std::vector<Sample> sample(std::span<const ShadingPoint> points, const IterationContext& context);
 
-  /// Fraction of all pairs of a point and a light that draw() has culled so far.
+  /// Fraction of all pairs of a point and a light that sample() has culled so far.
   double culled() const;
 
  private:
@@ -47,7 +47,7 @@ class LightDraw {
   float cutoff() const { return static_cast<float>(settings_.cutoff); }
   /// Samples lights of the given stretches for the point at x; returns the number of their lights.
   std::uint64_t sample_for(const V3f& x, std::size_t point, std::span<const std::size_t> stretches,
-                           Rng rng, std::vector<Drawn>& drawn) const;
+                           Rng rng, std::vector<Sample>& samples) const;
   std::uint64_t lights_of(std::size_t stretch) const {
     return before_[stretches_[stretch].end] - before_[stretches_[stretch].first];
   }

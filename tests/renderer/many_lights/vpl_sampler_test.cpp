@@ -1,6 +1,6 @@
-// Drawing a few of all virtual lights: which, how often, and what the sums of those come to.
+// Sampling a few of all virtual lights: which, how often, and what their sums come to.
 
-#include "renderer/many_lights/light_draw.h"
+#include "renderer/many_lights/vpl_sampler.h"
 
 #include <map>
 
@@ -17,12 +17,12 @@ using test::LitScene;
 
 using Lights = std::map<std::size_t, std::uint64_t>;  // by block
 
-/// All that may be drawn for a point.
+/// All that may be sampled for a point.
 Lights candidates(const LitScene& lit, const ShadingPoint& point, bool cull,
                   std::size_t most_stretches = 1024) {
-  LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = cull}, most_stretches);
+  VplSampler sampler(lit.terms(), {.lights = 1 << 20, .cull = cull}, most_stretches);
   Lights all;
-  for (const auto& d : draw.draw(std::span(&point, 1), lit.context(1))) {
+  for (const auto& d : sampler.sample(std::span(&point, 1), lit.context(1))) {
     EXPECT_EQ(d.weight, 1.0F);
     EXPECT_EQ(all.count(d.block), 0U);
     all[d.block] = d.lights;
@@ -36,7 +36,7 @@ std::size_t count(const Lights& lights) {
   return n;
 }
 
-TEST(LightDraw, LeavesOutOnlyWhatIsDark) {
+TEST(VplSampler, LeavesOutOnlyWhatIsDark) {
   for (const char* scene : {"ajar", "atrium", "cornell"}) {
     const LitScene lit({scene}, 3000, 2);
     std::size_t fine_left = 0, coarse_left = 0, all = 0;
@@ -65,8 +65,8 @@ TEST(LightDraw, LeavesOutOnlyWhatIsDark) {
   }
 }
 
-// Each candidate is drawn with one probability, never twice, and counts by its inverse.
-TEST(LightDraw, DrawsAllAlike) {
+// Each candidate is sampled with one probability, never twice, and counts by its inverse.
+TEST(VplSampler, SamplesAllAlike) {
   const LitScene lit({"ajar"}, 60, 2);
   constexpr int rounds = 4000;
   lit.with_points(500, [&](std::span<const ShadingPoint> points) {
@@ -74,18 +74,18 @@ TEST(LightDraw, DrawsAllAlike) {
     const Lights all = candidates(lit, point, true);
     const auto n = static_cast<double>(count(all));
     ASSERT_GT(n, 40);
-    LightDraw draw(lit.terms(), {.lights = 16});
+    VplSampler sampler(lit.terms(), {.lights = 16});
     std::map<std::pair<std::size_t, int>, int> times;
     for (int r = 0; r < rounds; ++r) {
-      std::size_t drawn = 0;
+      std::size_t sampled = 0;
       for (const auto& d :
-           draw.draw(std::span(&point, 1), lit.context(static_cast<std::uint64_t>(r)))) {
-        drawn += static_cast<std::size_t>(std::popcount(d.lights));
+           sampler.sample(std::span(&point, 1), lit.context(static_cast<std::uint64_t>(r)))) {
+        sampled += static_cast<std::size_t>(std::popcount(d.lights));
         EXPECT_NEAR(d.weight, n / 16, 1e-5 * n);
         EXPECT_EQ(d.lights & ~all.at(d.block), 0U);
         for_each_bit(d.lights, [&](int i) { ++times[{d.block, i}]; });
       }
-      ASSERT_EQ(drawn, 16U);
+      ASSERT_EQ(sampled, 16U);
     }
     EXPECT_EQ(times.size(), count(all));
     const double p = 16 / n;
@@ -94,17 +94,17 @@ TEST(LightDraw, DrawsAllAlike) {
   });
 }
 
-TEST(LightDraw, SumsHaveTheMeanOfAll) {
+TEST(VplSampler, SumsHaveTheMeanOfAll) {
   for (const char* scene : {"ajar", "atrium", "coated_points"}) {
     const LitScene lit({scene}, 200, 2);
     lit.with_points(400, [&](std::span<const ShadingPoint> points) {
       const ExactVisibility exact{{}};
       const auto expected = gathered(lit, lit.context(1), exact, points);
       for (const bool cull : {true, false}) {
-        LightDraw draw(lit.terms(), {.lights = 20, .cull = cull});
+        VplSampler sampler(lit.terms(), {.lights = 20, .cull = cull});
         std::vector<Moments> means(points.size());
         for (std::uint64_t r = 0; r < 600; ++r) {
-          const auto values = gathered(lit, lit.context(r + 2), exact, points, nullptr, &draw);
+          const auto values = gathered(lit, lit.context(r + 2), exact, points, nullptr, &sampler);
           for (std::size_t i = 0; i < values.size(); ++i) means[i].add(values[i]);
         }
         const double level = statistics::sidak(1e-5, 6 * points.size());
@@ -119,21 +119,22 @@ TEST(LightDraw, SumsHaveTheMeanOfAll) {
 }
 
 // With a cutoff those remain that lie within it, and no others.
-TEST(LightDraw, LeavesOutWhatIsBeyondTheCutoff) {
+TEST(VplSampler, LeavesOutWhatIsBeyondTheCutoff) {
   const LitScene lit({"ajar"}, 2000, 2);
   std::size_t beyond = 0;
   lit.with_points(500, [&](std::span<const ShadingPoint> points) {
     for (const ShadingPoint& p : points) {
       const V3f x = p.vertex->surface.x;
       const float reach = 0.7F;
-      LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = false, .cutoff = reach});
-      Lights drawn;
-      for (const auto& d : draw.draw(std::span(&p, 1), lit.context(1))) drawn[d.block] = d.lights;
+      VplSampler sampler(lit.terms(), {.lights = 1 << 20, .cull = false, .cutoff = reach});
+      Lights sampled;
+      for (const auto& d : sampler.sample(std::span(&p, 1), lit.context(1)))
+        sampled[d.block] = d.lights;
       for (const auto& candidate : candidates(lit, p, false)) {
         const std::size_t block = candidate.first;
         for_each_bit(candidate.second, [&](int i) {
           const bool within = (lit.lights().geometry(block, i).x - x).length2() <= reach * reach;
-          EXPECT_EQ((drawn[block] >> i & 1) != 0, within);
+          EXPECT_EQ((sampled[block] >> i & 1) != 0, within);
           beyond += !within;
         });
       }
@@ -142,27 +143,27 @@ TEST(LightDraw, LeavesOutWhatIsBeyondTheCutoff) {
   EXPECT_GT(beyond, 1000U);
 }
 
-TEST(LightDraw, OfMoreThanThereAreIsAll) {
+TEST(VplSampler, OfMoreThanThereAreIsAll) {
   const LitScene lit({"ajar"}, 100, 2);
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {
     const ExactVisibility exact{{}};
-    LightDraw draw(lit.terms(), {.lights = 1 << 20});
+    VplSampler sampler(lit.terms(), {.lights = 1 << 20});
     const auto all = gathered(lit, lit.context(1), exact, points);
-    const auto drawn = gathered(lit, lit.context(1), exact, points, nullptr, &draw);
-    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(drawn[i], all[i], 1e-12 * all[i]);
-    EXPECT_GT(draw.culled(), 0);
-    EXPECT_LT(draw.culled(), 1);
+    const auto sampled = gathered(lit, lit.context(1), exact, points, nullptr, &sampler);
+    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(sampled[i], all[i], 1e-12 * all[i]);
+    EXPECT_GT(sampler.culled(), 0);
+    EXPECT_LT(sampler.culled(), 1);
   });
 }
 
-TEST(LightDraw, OfNoLightsIsNothing) {
+TEST(VplSampler, OfNoLightsIsNothing) {
   const LitScene lit({"ajar"}, 1, 2, false);
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {
     const VplSet none(1, {1, false, 0.1F});
     const VplContributions terms(none, 2);
-    LightDraw draw(terms, {});
-    EXPECT_TRUE(draw.draw(points, lit.context(1)).empty());
-    EXPECT_EQ(draw.culled(), 0);
+    VplSampler sampler(terms, {});
+    EXPECT_TRUE(sampler.sample(points, lit.context(1)).empty());
+    EXPECT_EQ(sampler.culled(), 0);
   });
 }
 

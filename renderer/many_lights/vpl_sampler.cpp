@@ -1,11 +1,11 @@
-#include "renderer/many_lights/light_draw.h"
+#include "renderer/many_lights/vpl_sampler.h"
 
 #include <algorithm>
 
 namespace lacuna {
 
-LightDraw::LightDraw(const VplContributions& terms, const RandomLightsSettings& settings,
-                     std::size_t most_stretches)
+VplSampler::VplSampler(const VplContributions& terms, const RandomLightsSettings& settings,
+                       std::size_t most_stretches)
     : terms_(terms), settings_(settings) {
   const VplSet& lights = terms.lights();
   const std::size_t longest = (lights.blocks() + most_stretches - 1) / most_stretches;
@@ -26,8 +26,8 @@ LightDraw::LightDraw(const VplContributions& terms, const RandomLightsSettings& 
   }
 }
 
-std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> points,
-                                              const IterationContext& context) {
+std::vector<VplSampler::Sample> VplSampler::sample(std::span<const ShadingPoint> points,
+                                                   const IterationContext& context) {
   PointLanes lanes;
   for (const ShadingPoint& p : points) lanes.add(p);
   std::vector<std::vector<std::size_t>> candidates(points.size());
@@ -37,23 +37,23 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
       if (stretches_[s].first < terms_.lights().blocks(points[i].edges)) candidates[i].push_back(s);
     });
   }
-  std::vector<Drawn> drawn;
+  std::vector<Sample> samples;
   std::uint64_t pairs = 0, kept = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     pairs += before_[terms_.lights().blocks(points[i].edges)];
-    kept +=
-        sample_for(points[i].vertex->surface.x, i, candidates[i],
-                   {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather}, drawn);
+    kept += sample_for(points[i].vertex->surface.x, i, candidates[i],
+                       {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather},
+                       samples);
   }
   pairs_ += pairs;
   left_ += kept;
-  std::sort(drawn.begin(), drawn.end(), [](const Drawn& a, const Drawn& b) {
+  std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
     return std::pair(a.block, a.point) < std::pair(b.block, b.point);
   });
-  return drawn;
+  return samples;
 }
 
-std::uint64_t LightDraw::may_illuminate(const Stretch& s, const PointLanes& points) const {
+std::uint64_t VplSampler::may_illuminate(const Stretch& s, const PointLanes& points) const {
   std::uint64_t candidates = points.all();
   if (!s.bounded) return candidates;
   if (settings_.cull) candidates &= points.may_be_lit(s.bounds);
@@ -61,25 +61,25 @@ std::uint64_t LightDraw::may_illuminate(const Stretch& s, const PointLanes& poin
   return candidates;
 }
 
-bool LightDraw::is_near(const V3f& x, std::size_t block, int i) const {
+bool VplSampler::is_near(const V3f& x, std::size_t block, int i) const {
   if (settings_.cutoff == 0) return true;
   const VplGeometry light = terms_.lights().geometry(block, i);
   return light.infinite || (light.x - x).length2() <= cutoff() * cutoff();
 }
 
-std::uint64_t LightDraw::sample_for(const V3f& x, std::size_t point,
-                                    std::span<const std::size_t> stretches, Rng rng,
-                                    std::vector<Drawn>& drawn) const {
+std::uint64_t VplSampler::sample_for(const V3f& x, std::size_t point,
+                                     std::span<const std::size_t> stretches, Rng rng,
+                                     std::vector<Sample>& samples) const {
   std::uint64_t total = 0;
   for (const std::size_t s : stretches) total += lights_of(s);
   // Steps are at least 1, so no light is sampled twice.
   const double step = std::max(1.0, double(total) / double(settings_.lights));
   const double u = (double(rng.next_u32()) + 0.5) * 0x1p-32 * step;
-  const auto draws = std::min(total, static_cast<std::uint64_t>(settings_.lights));
+  const auto count = std::min(total, static_cast<std::uint64_t>(settings_.lights));
   std::size_t at = 0;
-  std::uint64_t passed = 0;              // number of lights of the preceding stretches
-  const std::size_t own = drawn.size();  // start of this point's entries
-  for (std::uint64_t k = 0; k < draws; ++k) {
+  std::uint64_t passed = 0;                // number of lights of the preceding stretches
+  const std::size_t own = samples.size();  // start of this point's entries
+  for (std::uint64_t k = 0; k < count; ++k) {
     const auto index =
         std::min(static_cast<std::uint64_t>(u + static_cast<double>(k) * step), total - 1);
     while (index >= passed + lights_of(stretches[at])) passed += lights_of(stretches[at++]);
@@ -91,14 +91,14 @@ std::uint64_t LightDraw::sample_for(const V3f& x, std::size_t point,
     const auto block = static_cast<std::size_t>(after - before_.begin()) - 1;
     const auto i = static_cast<int>(light - before_[block]);
     if (!is_near(x, block, i)) continue;
-    if (drawn.size() == own || drawn.back().block != block) {
-      drawn.push_back({block, point, 0, static_cast<float>(step)});
+    if (samples.size() == own || samples.back().block != block) {
+      samples.push_back({block, point, 0, static_cast<float>(step)});
     }
-    drawn.back().lights |= std::uint64_t{1} << i;
+    samples.back().lights |= std::uint64_t{1} << i;
   }
   return total;
 }
 
-double LightDraw::culled() const { return pairs_ == 0 ? 0 : 1 - double(left_) / double(pairs_); }
+double VplSampler::culled() const { return pairs_ == 0 ? 0 : 1 - double(left_) / double(pairs_); }
 
 }  // namespace lacuna
