@@ -74,11 +74,11 @@ void VplSet::add(StoredLights& path, const EmitterPoint& e) const {
 }
 
 void VplSet::add(StoredLights& path, const Vertex& v, int index) const {
-  if (const std::optional<LambertLit> lit = v.bsdf->lambert_lit(v.wp)) {
-    const Rgb rgb = v.throughput * lit->f * share_;
+  if (const std::optional<LambertLobe> lobe = v.bsdf->lambert_lobe(v.wp)) {
+    const Rgb rgb = v.throughput * lobe->f * share_;
     if (is_black(rgb)) return;
-    path.diffuse.push_back(
-        {v.surface.x, lit->side, lit->ns, lit->shading_cosine_ratio, rgb, v.surface.offset, index});
+    path.diffuse.push_back({v.surface.x, lobe->side, lobe->ns, lobe->shading_cosine_ratio, rgb,
+                            v.surface.offset, index});
   } else {
     path.general.push_back({v, index});
   }

@@ -20,7 +20,7 @@ struct DiffuseBlock {
   Lanes x, y, z;               ///< position
   Lanes gx, gy, gz;            ///< unit geometric normal on the emitting side
   Lanes sx, sy, sz;            ///< unit shading normal on that side
-  Lanes shading_cosine_ratio;  ///< LambertLit::shading_cosine_ratio
+  Lanes shading_cosine_ratio;  ///< LambertLobe::shading_cosine_ratio
   Lanes r, g, b;
   Lanes offset;  ///< ray_offset()
 };

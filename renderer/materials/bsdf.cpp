@@ -190,15 +190,15 @@ Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport trans
   return {s.f, Pdf<SolidAngle>(s.pdf)};
 }
 
-std::optional<LambertLit> Bsdf::lambert_lit(const V3f& from) const {
+std::optional<LambertLobe> Bsdf::lambert_lobe(const V3f& from) const {
   if (lobes_.kind != Lobes::Kind::lambert) return std::nullopt;
   const float side = dot(from, ng_);
   const V3f ng = side < 0 ? -ng_ : ng_;
-  if (flat_) return LambertLit{lobes_.diffuse * inv_pi, ng, ng, 1};
+  if (flat_) return LambertLobe{lobes_.diffuse * inv_pi, ng, ng, 1};
   const V3f ns = side < 0 ? -ns_ : ns_;
-  if (std::abs(side) < cos_rounding) return LambertLit{Rgb(0, 0, 0), ng, ns, 1};
-  return LambertLit{lobes_.diffuse * inv_pi, ng, ns,
-                    std::max(0.0F, dot(from, ns)) / std::abs(side)};
+  if (std::abs(side) < cos_rounding) return LambertLobe{Rgb(0, 0, 0), ng, ns, 1};
+  return LambertLobe{lobes_.diffuse * inv_pi, ng, ns,
+                     std::max(0.0F, dot(from, ns)) / std::abs(side)};
 }
 
 Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport) const {

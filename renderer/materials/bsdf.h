@@ -43,12 +43,12 @@ struct DeltaLobe {
 /// Smaller cosines are rounding errors.
 inline constexpr float cos_rounding = 0x1p-24F;
 
-/// A Lambertian surface lit from a fixed direction. Towards unit `w` it scatters f (w.side) t if
-/// w.side > 0, else 0; t is `shading_cosine_ratio` if w.ns > 0, else 1.
-struct LambertLit {
+/// A Lambertian surface that light reaches from a fixed direction: towards unit `w` its eval() is
+/// f (w.side) t if w.side > 0, else 0; t is `shading_cosine_ratio` if w.ns > 0, else 1.
+struct LambertLobe {
   Rgb f;                       ///< diffuse reflectance / pi
-  V3f side;                    ///< unit; ng on the lit side
-  V3f ns;                      ///< unit; ns on the lit side
+  V3f side;                    ///< unit; ng on the side of the light
+  V3f ns;                      ///< unit; ns on the side of the light
   float shading_cosine_ratio;  ///< >= 0
 };
 
@@ -129,7 +129,7 @@ class Bsdf {
   }
 
   /// eval(from, w, importance) as a function of w; none unless the surface is purely Lambertian.
-  std::optional<LambertLit> lambert_lit(const V3f& from) const;
+  std::optional<LambertLobe> lambert_lobe(const V3f& from) const;
 
   /// Whether the surface can carry and receive virtual lights: it is opaque and has a broad lobe,
   /// diffuse or GGX with alpha >= `least_alpha`.

@@ -63,7 +63,7 @@ TEST_P(Eight, LitFromOneSide) {
     for (int n = 0; n < 1000; ++n) {
       const V3f from = cases::uniform_direction(random);
       const V3f w = cases::uniform_direction(random);
-      const auto lit = bsdf.lambert_lit(from);
+      const auto lit = bsdf.lambert_lobe(from);
       if (!lit) return;
       const float cos = dot(w, lit->side);
       const float t = dot(w, lit->ns) > 0 ? lit->shading_cosine_ratio : 1.0F;
