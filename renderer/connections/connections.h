@@ -26,7 +26,7 @@ struct PairedConnections : StrategyBase {
 /// - find(): looks up the distributions for an eye vertex, `depth` edges from the eye: a struct
 ///   with a member `cell` < cells().
 /// - sample(): samples light vertices of the LightRange, either one of each existing length s or
-///   some of all lengths, each with probability `survival(s)`, and calls `use(s, drawn)`.
+///   some of all lengths, each with probability `survival(s)`, and calls `use(s, sample)`.
 ///   VertexSample::probability is the exact expected number of samples of this vertex, without the
 ///   factor `survival(s)`, > 0; otherwise the method is biased. It must be positive for every
 ///   vertex that can contribute.

@@ -59,10 +59,10 @@ class HybridConnections : public StrategyBase {
       cache_.sample(lookup.records, range, rng, survival, use);
       return;
     }
-    skeleton_.sample(lookup.node, range, rng, survival, [&](int s, VertexSample drawn) {
-      drawn.distribution = static_cast<std::uint8_t>(
-          drawn.distribution + ImportanceCacheConnections::distributions.size());
-      use(s, drawn);
+    skeleton_.sample(lookup.node, range, rng, survival, [&](int s, VertexSample sample) {
+      sample.distribution = static_cast<std::uint8_t>(
+          sample.distribution + ImportanceCacheConnections::distributions.size());
+      use(s, sample);
     });
   }
 

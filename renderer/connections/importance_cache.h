@@ -31,12 +31,12 @@ class ImportanceCacheConnections : public StrategyBase {
              Counters& counters);
 
   struct CellLookup : EyeRecords::Neighbours {
-    const ResamplingCell* drawn = nullptr;  ///< of one of the nearest records, selected at random
+    const ResamplingCell* selected = nullptr;  ///< of one of the nearest records, at random
   };
   CellLookup find(const Vertex& v, int /*depth*/, Rng& rng) const {
     CellLookup lookup{records_.nearest(v, settings_.neighbours)};
     if (lookup.n > 0) {
-      lookup.drawn = &cells_of_records_[lookup.index[rng.below(lookup.n)]];
+      lookup.selected = &cells_of_records_[lookup.index[rng.below(lookup.n)]];
     }
     return lookup;
   }
@@ -51,15 +51,15 @@ class ImportanceCacheConnections : public StrategyBase {
       return;
     }
     sample_connections(
-        range, survival, [&](int s) { return lookup.drawn->table(s).choose(rng); },
+        range, survival, [&](int s) { return lookup.selected->table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
-          const std::uint32_t i = lookup.drawn->table(s).resolve(chosen, rng).index;
+          const std::uint32_t i = lookup.selected->table(s).resolve(chosen, rng).index;
           float sum = 0;
           for (std::size_t k = 0; k < lookup.n; ++k) {
             sum += cells_of_records_[lookup.index[k]].table(s).pmf(i).value;
           }
           return VertexSample{i, sum / static_cast<float>(lookup.n),
-                              lookup.drawn->table(s).distribution(i)};
+                              lookup.selected->table(s).distribution(i)};
         },
         use);
   }

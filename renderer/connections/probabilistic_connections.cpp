@@ -20,7 +20,7 @@ void JointDistribution::append(std::span<const double> weights) {
   cumulative_.push_back(cumulative_.back() + std::accumulate(weights.begin(), weights.end(), 0.0));
 }
 
-JointDistribution::Draw JointDistribution::sample(int longest, Rng& rng) const {
+JointDistribution::Sample JointDistribution::sample(int longest, Rng& rng) const {
   const double at = fine_number(rng) * total(longest);
   const auto first = cumulative_.begin() + 1;
   const auto last = first + longest;
@@ -63,23 +63,24 @@ std::uint64_t ProbabilisticConnections::build(const EyeRecords::Record& record,
   return rays;
 }
 
-JointDistribution::Draw ProbabilisticConnections::uniform_draw(int longest, Rng& rng) const {
+JointDistribution::Sample ProbabilisticConnections::sample_uniform_vertex(int longest,
+                                                                          Rng& rng) const {
   const std::size_t at = rng.below(vertices_up_to(longest));
   const auto found = std::upper_bound(counts_.begin(), counts_.end(), at);
   return {static_cast<int>(found - counts_.begin()), static_cast<std::uint32_t>(at - *(found - 1))};
 }
 
-JointDistribution::Draw ProbabilisticConnections::draw(const CellLookup& lookup, int longest,
-                                                       Rng& rng) const {
+JointDistribution::Sample ProbabilisticConnections::sample_vertex(const CellLookup& lookup,
+                                                                  int longest, Rng& rng) const {
   if (lookup.n == 0 || rng.decide(static_cast<float>(settings_.uniform))) {
-    return uniform_draw(longest, rng);
+    return sample_uniform_vertex(longest, rng);
   }
   const JointDistribution& joint = joint_of_records_[lookup.index[rng.below(lookup.n)]];
-  return joint.empty(longest) ? uniform_draw(longest, rng) : joint.sample(longest, rng);
+  return joint.empty(longest) ? sample_uniform_vertex(longest, rng) : joint.sample(longest, rng);
 }
 
 VertexSample ProbabilisticConnections::probability(const CellLookup& lookup, int longest,
-                                                   const JointDistribution::Draw& d) const {
+                                                   const JointDistribution::Sample& d) const {
   const double same = 1 / static_cast<double>(vertices_up_to(longest));
   double by_records = 0;  // mean over the records; records of weight 0 sample uniformly
   double uniform = lookup.n == 0 ? 1 : double(static_cast<float>(settings_.uniform));

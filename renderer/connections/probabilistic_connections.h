@@ -24,16 +24,16 @@ class JointDistribution {
   void append(std::span<const double> weights);
 
   /// A vertex LightVertices::at(s, index).
-  struct Draw {
+  struct Sample {
     int s;
     std::uint32_t index;
   };
   /// Whether all vertices with s <= longest have weight 0.
   bool empty(int longest) const { return !(total(longest) > 0); }
   /// Samples a vertex with s <= longest. Requires !empty(longest).
-  Draw sample(int longest, Rng& rng) const;
+  Sample sample(int longest, Rng& rng) const;
   /// Probability that sample() returns `d`; 0 if empty(longest).
-  double pmf(int longest, const Draw& d) const {
+  double pmf(int longest, const Sample& d) const {
     if (empty(longest) || tables_[place(d.s) - 1].empty()) return 0;
     return (total(d.s) - total(d.s - 1)) / total(longest) *
            double(tables_[place(d.s) - 1].pmf(d.index).value);
@@ -81,14 +81,14 @@ class ProbabilisticConnections : public StrategyBase {
               Use&& use) const {
     if (vertices_up_to(range.longest) == 0) return;
     for (int k = 0; k < settings_.draws; ++k) {
-      const JointDistribution::Draw d = draw(lookup, range.longest, rng);
-      const float p = survival(d.s);
+      const JointDistribution::Sample vertex = sample_vertex(lookup, range.longest, rng);
+      const float p = survival(vertex.s);
       if (!(p > 0)) continue;
-      range.lights.prefetch(d.s, d.index);
-      VertexSample drawn = probability(lookup, range.longest, d);
-      drawn.probability *= static_cast<float>(settings_.draws);
-      drawn.survival = p;
-      use(d.s, drawn);
+      range.lights.prefetch(vertex.s, vertex.index);
+      VertexSample sample = probability(lookup, range.longest, vertex);
+      sample.probability *= static_cast<float>(settings_.draws);
+      sample.survival = p;
+      use(vertex.s, sample);
     }
   }
 
@@ -99,11 +99,11 @@ class ProbabilisticConnections : public StrategyBase {
  private:
   std::uint64_t build(const EyeRecords::Record& record, JointDistribution& joint,
                       const IterationContext& context, const LightVertices& lights) const;
-  JointDistribution::Draw draw(const CellLookup& lookup, int longest, Rng& rng) const;
-  JointDistribution::Draw uniform_draw(int longest, Rng& rng) const;
+  JointDistribution::Sample sample_vertex(const CellLookup& lookup, int longest, Rng& rng) const;
+  JointDistribution::Sample sample_uniform_vertex(int longest, Rng& rng) const;
   /// `d` with its probability in one sample.
   VertexSample probability(const CellLookup& lookup, int longest,
-                           const JointDistribution::Draw& d) const;
+                           const JointDistribution::Sample& d) const;
   std::size_t vertices_up_to(int s) const { return counts_[static_cast<std::size_t>(s)]; }
 
   ProbabilisticConnectionsSettings settings_;

@@ -38,7 +38,7 @@ struct LightRange {
 };
 
 /// For each s of the range that has vertices, samples a light vertex with probability `survival(s)`
-/// and calls `use(s, drawn)`. Sampling is split into `choose(s)` and `resolve(s, chosen)`: each
+/// and calls `use(s, sample)`. Sampling is split into `choose(s)` and `resolve(s, chosen)`: each
 /// step prefetches the data of the next.
 template <class Survival, class Choose, class Resolve, class Use>
 void sample_connections(const LightRange& range, Survival&& survival, Choose&& choose,

@@ -26,7 +26,7 @@ class ResamplingTable {
   bool empty() const { return table_.empty(); }
   /// AliasTable::choose() and resolve().
   std::uint32_t choose(Rng& rng) const { return table_.choose(rng); }
-  AliasTable::Draw resolve(std::uint32_t chosen, Rng& rng) const {
+  AliasTable::Sample resolve(std::uint32_t chosen, Rng& rng) const {
     return table_.resolve(chosen, rng);
   }
   /// The probability of sampling `i`.

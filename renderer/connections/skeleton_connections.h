@@ -54,7 +54,7 @@ class SkeletonConnections : public StrategyBase {
     sample_connections(
         range, survival, [&](int s) { return cell.table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
-          const AliasTable::Draw d = cell.table(s).resolve(chosen, rng);
+          const AliasTable::Sample d = cell.table(s).resolve(chosen, rng);
           return VertexSample{d.index, d.pmf.value, cell.table(s).distribution(d.index)};
         },
         use);

@@ -27,7 +27,7 @@ class AliasTable {
   std::uint32_t sample(Rng& rng) const { return resolve(choose(rng), rng).index; }
 
   /// An index and its probability.
-  struct Draw {
+  struct Sample {
     std::uint32_t index;
     Pdf<Count> pmf;
   };
@@ -39,9 +39,9 @@ class AliasTable {
     __builtin_prefetch(&bins_[i]);
     return i;
   }
-  Draw resolve(std::uint32_t chosen, Rng& rng) const { return resolve(chosen, rng.next_u32()); }
+  Sample resolve(std::uint32_t chosen, Rng& rng) const { return resolve(chosen, rng.next_u32()); }
   /// resolve() from 32 uniform bits.
-  Draw resolve(std::uint32_t chosen, std::uint32_t uniform) const {
+  Sample resolve(std::uint32_t chosen, std::uint32_t uniform) const {
     const Bin& b = bins_[chosen];
     if (uniform < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
     return {b.alias, Pdf<Count>(b.alias_pmf)};
@@ -55,7 +55,7 @@ class AliasTable {
   }
   /// sample() from one number `u`, uniform in [0, 1). Afterwards `u` is the position within the
   /// part of the bin, again uniform, with fewer bits by those that selected the index.
-  Draw sample(double& u) const {
+  Sample sample(double& u) const {
     const double at = u * static_cast<double>(bins_.size());
     const auto i = std::min(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(size() - 1));
     const Bin& b = bins_[i];

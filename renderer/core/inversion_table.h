@@ -22,13 +22,13 @@ class InversionTable {
 
   bool empty() const { return last_.empty(); }
 
-  struct Draw {
+  struct Sample {
     std::uint32_t index;
     std::uint32_t begin;  ///< the first number that returns `index`
     std::uint64_t count;  ///< of numbers that return it
   };
   /// Samples an index from 32 uniform bits. Requires !empty().
-  Draw draw(std::uint32_t uniform) const {
+  Sample sample(std::uint32_t uniform) const {
     std::uint32_t i = cutpoints_[(uniform * std::uint64_t{last_.size()}) >> 32];
     while (last_[i] < uniform) ++i;
     return {i, i == first_ ? 0 : last_[i - 1] + 1, count(i)};

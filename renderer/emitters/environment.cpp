@@ -76,8 +76,8 @@ Rgb Environment::radiance(const V3f& w) const {
 
 Environment::Sample Environment::sample(const Rng::FinePoint& at) const {
   const auto high = static_cast<std::uint32_t>(at.x >> 32);
-  const InversionTable::Draw row = rows_.draw(at.y);
-  const InversionTable::Draw column = texels_[row.index].draw(high);
+  const InversionTable::Sample row = rows_.sample(at.y);
+  const InversionTable::Sample column = texels_[row.index].sample(high);
   // The remainders of the numbers place the direction within its texel.
   const double v = (double(at.y - row.begin) + 0.5) / double(row.count);
   const double rest = double(high - column.begin) + double(at.x & 0xffffffff) * 0x1p-32;

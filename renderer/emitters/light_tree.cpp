@@ -239,10 +239,10 @@ void LightTree::end(Descent& d) const {
   if (d.state == State::at_bundle) {
     const Bundle& bundle = bundles_[bundle_of_[d.where]];
     d.refine(0x1p-44);  // bits for the table's bins, and for parts of bins down to 2^-32
-    const AliasTable::Draw drawn = bundle.by_intensity.sample(d.u);
-    d.probability *= double(drawn.pmf.value);
+    const AliasTable::Sample sample = bundle.by_intensity.sample(d.u);
+    d.probability *= double(sample.pmf.value);
     d.u = std::min(d.u, 1 - 0x1p-53);
-    *d.result = {bundle.entries[drawn.index], d.probability, d.u};
+    *d.result = {bundle.entries[sample.index], d.probability, d.u};
   } else {
     *d.result = {entries_[d.where], d.probability, d.u};
   }

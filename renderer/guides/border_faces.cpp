@@ -28,7 +28,7 @@ void BorderFaceLight::prepare(const PrepareContext& context, const SurfaceLookup
   }
 }
 
-VoxelFace BorderFaceLight::draw(std::uint32_t region, const V3d& from, Rng& rng) const {
+VoxelFace BorderFaceLight::sample_face(std::uint32_t region, const V3d& from, Rng& rng) const {
   const std::uint32_t own = sampled_region(region);
   const VoxelFace face = borders_.face(own, tables_[own].sample(rng));
   if (!has_thresholds()) return face;
@@ -57,11 +57,11 @@ void BorderFaceLight::add_parts(std::uint32_t region, const V3d& from, double we
 double BorderFaceLight::probability(std::uint32_t part, const CrossedFace& face, std::uint32_t near,
                                     std::uint32_t far, const V3d& from) const {
   const auto regions = static_cast<std::uint32_t>(tables_.size());
-  const bool first_drawn = part < regions;
-  const std::uint32_t region = first_drawn ? part : part - regions;
+  const bool from_first = part < regions;
+  const std::uint32_t region = from_first ? part : part - regions;
   if (region != near) return 0;
   const VoxelFace own{static_cast<std::uint32_t>(label_->index(face.from)), face.side_of_from()};
-  if (first_drawn && has_thresholds() && is_replaced(own, far, from)) return 0;
+  if (from_first && has_thresholds() && is_replaced(own, far, from)) return 0;
   return probability(region, own);
 }
 

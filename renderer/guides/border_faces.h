@@ -45,7 +45,7 @@ class BorderFaceLight {
   /// The bounds of the voxels on both sides of the region's border.
   const VoxelBox& box(std::uint32_t region) const { return boxes_[region]; }
   /// Samples a face for the point `from`, in voxels. Requires mass(region) above 0.
-  VoxelFace draw(std::uint32_t region, const V3d& from, Rng& rng) const;
+  VoxelFace sample_face(std::uint32_t region, const V3d& from, Rng& rng) const;
   /// Adds the groups of faces, which are borders of regions. The index of a group is r for the
   /// border of region r sampled directly, and r plus the number of regions if it replaces an
   /// unsuitable face.

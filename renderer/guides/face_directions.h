@@ -64,7 +64,7 @@ class FaceDirections final : public GuidingDistribution {
       left -= part;
     }
     if (region == no_region) return std::nullopt;
-    const VoxelFace face = faces_.draw(region, from, rng);
+    const VoxelFace face = faces_.sample_face(region, from, rng);
     const V2f u = rng.next2();
     const V3d d = face.point(label_->voxel(face.voxel), double(u.x), double(u.y)) - from;
     const double ahead = d.dot(face.normal());

@@ -150,7 +150,7 @@ void PortalFaces::find_all_exits(const PrepareContext& context, const SurfaceLoo
   });
 }
 
-VoxelFace PortalFaces::draw(std::uint32_t region, const V3d&, Rng& rng) const {
+VoxelFace PortalFaces::sample_face(std::uint32_t region, const V3d&, Rng& rng) const {
   const std::vector<Exit>& exits = exits_[region].exits;
   double left = rng.next_choice();
   std::size_t i = 0;

@@ -32,7 +32,7 @@ class PortalFaces {
     for (const Exit& e : exits_[region].exits)
       parts.add(boxes_[e.portal], e.portal, weight * e.each);
   }
-  VoxelFace draw(std::uint32_t region, const V3d& from, Rng& rng) const;
+  VoxelFace sample_face(std::uint32_t region, const V3d& from, Rng& rng) const;
   /// 1 for a face of `portal`, that is, between its regions `near` and `far`; else 0.
   double probability(std::uint32_t portal, const CrossedFace&, std::uint32_t near,
                      std::uint32_t far, const V3d&) const {

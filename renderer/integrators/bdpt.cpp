@@ -380,19 +380,19 @@ class ResampledBdpt final : public Bdpt {
       const float p = cell_statistics_.survival(lookup.cell, s, double(throughput), part.threshold);
       return p >= 1 || rng.decide(p) ? p : 0.0F;
     };
-    connections_.sample(lookup, LightRange{part.lights, longest}, rng, survival,
-                        [&](int s, const VertexSample& drawn) {
-                          const double samples = static_cast<double>(part.lights.paths()) *
-                                                 double(drawn.probability) * double(drawn.survival);
-                          part.lights.with_end(s, drawn.index, guide_, [&](const auto& light) {
-                            const BdptContribution known{.path = static_cast<std::uint8_t>(k),
-                                                         .distribution = drawn.distribution,
-                                                         .survival = drawn.survival,
-                                                         .throughput = throughput,
-                                                         .cell = lookup.cell};
-                            Base::queue_connection(eye, light, samples, known, part.batch);
-                          });
-                        });
+    const auto connect_to = [&](int s, const VertexSample& sample) {
+      const double samples =
+          double(part.lights.paths()) * double(sample.probability) * double(sample.survival);
+      part.lights.with_end(s, sample.index, guide_, [&](const auto& light) {
+        const BdptContribution known{.path = static_cast<std::uint8_t>(k),
+                                     .distribution = sample.distribution,
+                                     .survival = sample.survival,
+                                     .throughput = throughput,
+                                     .cell = lookup.cell};
+        Base::queue_connection(eye, light, samples, known, part.batch);
+      });
+    };
+    connections_.sample(lookup, LightRange{part.lights, longest}, rng, survival, connect_to);
   }
 
   /// CPU seconds of all threads in the parts of an iteration.

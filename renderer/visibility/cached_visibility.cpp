@@ -37,7 +37,7 @@ void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& ter
     const Float8 var = select(is_tested, max(least, q * (1 - q)), unknown);
     sampler.set(k, chance.of(t, var, terms.weight), t);
   }
-  d.tests = sampler.draw(settings_.draws, at.rng);
+  d.tests = sampler.sample(settings_.draws, at.rng);
   for_each_bit(d.tests, [&](int i) {
     const float x = sampler.probability(i);
     d.untested[i] *= (x - 1) / x;

@@ -30,7 +30,7 @@ void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms,
     const Float8 t = terms.luminance.eight(k);
     sampler.set(k, chance.of(t, 1, terms.weight), t);
   }
-  d.tests = sampler.draw(settings_.draws, at.rng);
+  d.tests = sampler.sample(settings_.draws, at.rng);
   d.untested.v.fill(0);
   for_each_bit(d.tests, [&](int i) { d.gain[i] = 1 / sampler.probability(i); });
 }

@@ -48,30 +48,30 @@ struct TestSampler {
   }
   float probability(int i) const { return float(v[static_cast<std::size_t>(i)]) / float(one); }
 
-  std::uint64_t draw(TestDraws draws, Rng& rng) const {
+  std::uint64_t sample(TestDraws draws, Rng& rng) const {
     return draws == TestDraws::systematic ? systematic(rng.next_u32()) : independent(rng);
   }
   /// Samples each light with its probability by one random number u: the lights whose intervals of
   /// the cumulative sum contain u, u + 1, ... The lights of a block are similar, so the samples are
   /// spread over the block.
   std::uint64_t systematic(std::uint32_t random) const {
-    std::uint64_t drawn = 0;
+    std::uint64_t sampled = 0;
     std::uint32_t sum = random >> (32 - bits);
     for (int i = 0; i < Lanes::size; ++i) {
       sum += v[static_cast<std::size_t>(i)];
-      drawn |= std::uint64_t{sum >> bits} << i;
+      sampled |= std::uint64_t{sum >> bits} << i;
       sum &= one - 1;
     }
-    return drawn;
+    return sampled;
   }
   /// Samples each light with its probability by its own random number.
   std::uint64_t independent(Rng& rng) const {
-    std::uint64_t drawn = 0;
+    std::uint64_t sampled = 0;
     for (int i = 0; i < Lanes::size; ++i) {
       const std::uint32_t p = v[static_cast<std::size_t>(i)];
-      if (p > 0 && rng.next_u32() >> (32 - bits) < p) drawn |= std::uint64_t{1} << i;
+      if (p > 0 && rng.next_u32() >> (32 - bits) < p) sampled |= std::uint64_t{1} << i;
     }
-    return drawn;
+    return sampled;
   }
 };
 

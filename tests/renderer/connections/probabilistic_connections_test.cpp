@@ -52,7 +52,7 @@ TEST(JointDistribution, DrawsLengthsAndVerticesByTheirWeights) {
         }
       }
       for (int k = 0; k < draws; ++k) {
-        const JointDistribution::Draw d = joint.sample(longest, rng);
+        const JointDistribution::Sample d = joint.sample(longest, rng);
         ASSERT_GE(d.s, 1);
         ASSERT_LE(d.s, longest);
         ++observed[first[static_cast<std::size_t>(d.s) - 1] + d.index];

@@ -97,7 +97,7 @@ TEST(ResamplingTable, DrawsWithTheProbabilitiesItReports) {
       std::vector<double> observed(40), expected(40);
       for (std::uint32_t i = 0; i < 40; ++i) expected[i] = draws * double(table.pmf(i).value);
       for (int i = 0; i < draws; ++i) {
-        const AliasTable::Draw d = table.resolve(table.choose(rng), rng);
+        const AliasTable::Sample d = table.resolve(table.choose(rng), rng);
         ASSERT_EQ(d.pmf.value, table.pmf(d.index).value);
         ++observed[d.index];
       }

@@ -45,7 +45,7 @@ TEST(AliasTable, OneNumberDrawsAndIsLeft) {
   std::vector<int> count(weights.size() * parts);
   for (int i = 0; i < draws; ++i) {
     double u = rng.next_choice();
-    const AliasTable::Draw d = table.sample(u);
+    const AliasTable::Sample d = table.sample(u);
     ASSERT_EQ(d.pmf.value, table.pmf(d.index).value);
     ASSERT_GE(u, 0);
     ASSERT_LE(u, 1);

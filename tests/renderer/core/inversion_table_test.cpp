@@ -31,11 +31,11 @@ TEST(InversionTable, IntervalsTileAllNumbersInOrder) {
       }
       ASSERT_LT(next, std::uint64_t{1} << 32) << "index " << i << " of " << n;
       const auto first = static_cast<std::uint32_t>(next);
-      const InversionTable::Draw d = table.draw(first);
+      const InversionTable::Sample d = table.sample(first);
       ASSERT_EQ(d.index, i);
       ASSERT_EQ(d.begin, first);
       const auto last = static_cast<std::uint32_t>(next + d.count - 1);
-      ASSERT_EQ(table.draw(last).index, i);
+      ASSERT_EQ(table.sample(last).index, i);
       ASSERT_EQ(table.pmf(i).value, float(double(d.count) * 0x1p-32));
       ASSERT_NEAR(double(d.count) * 0x1p-32, weights[i] / sum, double(n) * 0x1p-32);
       next += d.count;

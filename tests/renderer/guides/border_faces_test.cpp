@@ -50,7 +50,9 @@ struct BorderScene {
     const std::uint32_t far = inside ? labels.label(crossed.to) : no_region;
     return faces.probability(region, crossed, near, far, anywhere);
   }
-  VoxelFace draw(std::uint32_t region, Rng& rng) const { return faces.draw(region, anywhere, rng); }
+  VoxelFace draw(std::uint32_t region, Rng& rng) const {
+    return faces.sample_face(region, anywhere, rng);
+  }
 
   void expect_shares(const std::vector<FaceLight>& light) const {
     for (std::uint32_t r = 0; r < border.size(); ++r) {

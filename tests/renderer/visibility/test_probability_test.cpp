@@ -86,7 +86,7 @@ TEST(TestSampler, DrawEachWithItsProbability) {
     std::array<int, Lanes::size> drawn{};
     double squares = 0;
     for (int n = 0; n < draws; ++n) {
-      const std::uint64_t bits = keys.draw(how, rng);
+      const std::uint64_t bits = keys.sample(how, rng);
       for (int i = 0; i < Lanes::size; ++i) drawn[static_cast<std::size_t>(i)] += bits >> i & 1;
       const double off = std::popcount(bits) - mean;
       squares += off * off;
