@@ -107,7 +107,7 @@ class PathTracer::TilePass {
     if (!goes_on || !direct_.active() || !v.bsdf->connectible()) return;
     direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
                    [&](const Ray& ray, const Rgb& value, const V3f& w) {
-                     if (depth == 2) reuse_.look(i, w);
+                     if (depth == 2) reuse_.set_next_event_direction(i, w);
                      shadows_.add(ray, {value, batch_.pixels[i], static_cast<std::uint16_t>(i),
                                         static_cast<std::uint16_t>(depth)});
                    });

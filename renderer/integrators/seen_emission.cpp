@@ -16,8 +16,8 @@ constexpr float alike = 0.01F;
 
 constexpr std::size_t most_rays = 16;  // of a pixel
 
-Rgb emission_at(const Scene& scene, const Ray& ray, bool met, const Hit& hit) {
-  if (!met) return scene.emitters().background(ray.d);
+Rgb emission_at(const Scene& scene, const Ray& ray, bool is_hit, const Hit& hit) {
+  if (!is_hit) return scene.emitters().background(ray.d);
   const SceneData& data = scene.data();
   if (!data.materials[data.meshes[hit.mesh].material].emits()) return Rgb(0, 0, 0);
   return scene.emitted(scene.surface(ray, hit), -ray.d);
@@ -25,8 +25,8 @@ Rgb emission_at(const Scene& scene, const Ray& ray, bool met, const Hit& hit) {
 
 Rgb emission_along(const Scene& scene, const Ray& ray) {
   Hit hit;
-  const bool met = scene.rays().intersect(ray, hit);
-  return emission_at(scene, ray, met, hit);
+  const bool is_hit = scene.rays().intersect(ray, hit);
+  return emission_at(scene, ray, is_hit, hit);
 }
 
 /// Calls `at(u)` for a point in each cell of a grid of `side` x `side` over [0, 1)^2.
@@ -65,10 +65,10 @@ std::vector<Range> seen_ranges(const PrepareContext& context) {
       stratified(2, rng, [&](const V2f& u) { rays.push_back(camera.sample({x, y}, u)); });
     }
     std::vector<Hit> hits(rays.size());
-    std::vector<std::uint8_t> met(rays.size());
-    context.scene.rays().intersect(rays, hits, met);
+    std::vector<std::uint8_t> is_hit(rays.size());
+    context.scene.rays().intersect(rays, hits, is_hit);
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      const float l = luminance(emission_at(context.scene, rays[k], met[k] != 0, hits[k]));
+      const float l = luminance(emission_at(context.scene, rays[k], is_hit[k] != 0, hits[k]));
       seen[first + k / 4].add({l, l});
     }
   });
@@ -187,17 +187,17 @@ Rgb SeenEmission::mean(const IterationContext& context, std::size_t pixel, int n
   const V2i at(static_cast<int>(pixel) % width, static_cast<int>(pixel) / width);
   std::array<Ray, most_rays> rays;
   std::array<Hit, most_rays> hits;
-  std::array<std::uint8_t, most_rays> met{};
+  std::array<std::uint8_t, most_rays> is_hit{};
   const auto count = static_cast<std::size_t>(n);
   for (std::size_t k = 0; k < count; ++k) {
     Rng rng = context.path_numbers(pixel, k, count, Rng::Purpose::emission_means);
     rays[k] = context.camera.sample(at, rng.next2());
   }
-  context.scene.rays().intersect(std::span(rays).first(count), hits, met);
+  context.scene.rays().intersect(std::span(rays).first(count), hits, is_hit);
   counters.rays += count;
   Rgb sum(0, 0, 0);
   for (std::size_t k = 0; k < count; ++k) {
-    sum += emission_at(context.scene, rays[k], met[k] != 0, hits[k]);
+    sum += emission_at(context.scene, rays[k], is_hit[k] != 0, hits[k]);
   }
   return sum / static_cast<float>(n);
 }

@@ -42,24 +42,24 @@ void PathBuilder::keep_light(const WholePath& path, int last) {
 
 bool PathBuilder::sample_from_eye(int n, Rng& rng) {
   for (int i = 0; i < n; ++i) {
-    const bool met = eye_.size() == 1 ? look_through(measure_.film_point(rng.next2()))
-                                      : scatter(eye_, Transport::radiance, rng);
-    if (!met) return false;
+    const bool is_hit = eye_.size() == 1 ? look_through(measure_.film_point(rng.next2()))
+                                         : scatter(eye_, Transport::radiance, rng);
+    if (!is_hit) return false;
   }
   return true;
 }
 
 bool PathBuilder::sample_from_light(int n, Rng& rng) {
   for (int i = 0; i < n; ++i) {
-    bool met = false;
+    bool is_hit = false;
     if (light_.empty()) {
-      met = start_light(rng);
+      is_hit = start_light(rng);
     } else if (light_.size() == 1) {
-      met = leave_light(rng);
+      is_hit = leave_light(rng);
     } else {
-      met = scatter(light_, Transport::importance, rng);
+      is_hit = scatter(light_, Transport::importance, rng);
     }
-    if (!met) return false;
+    if (!is_hit) return false;
   }
   return true;
 }
@@ -72,13 +72,13 @@ bool PathBuilder::arrive(const Ray& ray, std::vector<PathNode>& end) {
   const Scene& scene = measure_.scene();
   ++counters_.rays;
   Hit hit;
-  const bool met = scene.rays().intersect(ray, hit);
-  if (!met && &end == &light_) return false;
+  const bool is_hit = scene.rays().intersect(ray, hit);
+  if (!is_hit && &end == &light_) return false;
   const std::uint32_t id = pool_.take();
   end.push_back({id, false, false});
   Vertex& v = pool_[id].v;
   v.wp = -ray.d;
-  if (met) {
+  if (is_hit) {
     v.kind = Vertex::Kind::surface;
     v.surface = scene.surface(ray, hit);
     scene.make_bsdf(v.surface, v.bsdf);
@@ -171,7 +171,7 @@ bool PathBuilder::end_on_emitter() {
   return e.has_value();
 }
 
-bool PathBuilder::join(WholePath& path) {
+bool PathBuilder::connect(WholePath& path) {
   if (!light_.empty() && vertex(eye_.back()).kind == Vertex::Kind::background) return false;
   eye_.back().delta = false;
   if (!light_.empty()) light_.back().delta = false;

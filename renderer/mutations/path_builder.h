@@ -62,7 +62,7 @@ class PathBuilder {
 
   /// Connects the ends by a segment, unless the light's part is empty, and writes the nodes to
   /// `path`. Returns false if the eye's end left the scene.
-  bool join(WholePath& path);
+  bool connect(WholePath& path);
   /// Whether the segment that connects both parts is unoccluded.
   bool visible() const;
   /// Returns the vertices appended since keep() to the pool.

@@ -84,7 +84,7 @@ void PathEvaluator::walk_lights(std::span<const Point> points, Counters& counter
     if (light_of_[i] == no_path) continue;
     for (int s = 1; s <= lights_.length(light_of_[i]); ++s) {
       if (!points[i].wanted.wants(s, 1)) continue;
-      lights_.join_eye(light_of_[i], s - 1, [&](const Ray& ray, const auto& splat) {
+      lights_.connect_to_eye(light_of_[i], s - 1, [&](const Ray& ray, const auto& splat) {
         queue_.add(ray, {splat.value * splat.weight, i, 0, true, splat.at});
       });
     }
@@ -135,7 +135,7 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
     return;
   }
   const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
-  const auto join = [&](const auto& end) {
+  const auto connect_to = [&](const auto& end) {
     const Connection c = connect(eye, end);
     if (!c) return;
     const auto w = static_cast<float>(weight(eye, end, c, counts_));
@@ -144,9 +144,9 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
   for (int s = 1; s <= lights_.length(light); ++s) {
     if (!point.wanted.wants(s, t)) continue;
     if (s == 1) {
-      join(EmitterEndpoint{lights_.emitter(light), guide_});
+      connect_to(EmitterEndpoint{lights_.emitter(light), guide_});
     } else if (lights_.connectible(light, s - 1)) {
-      join(lights_.end(light, s - 1));
+      connect_to(lights_.end(light, s - 1));
     }
   }
 }

@@ -32,7 +32,7 @@ Rgb scattered(const WholePath& path, const VertexPool& pool, int i) {
   return lobe ? lobe->value : Rgb(0, 0, 0);
 }
 
-bool joinable(const WholePath& path, const VertexPool& pool, int j) {
+bool can_connect(const WholePath& path, const VertexPool& pool, int j) {
   const int k = path.edge_count();
   if (j == k) return !pool[path.nodes.back().vertex].emitter.delta();
   return !path.node(j).delta && !path.node(j + 1).delta;
@@ -140,11 +140,11 @@ double PathMeasure::per_direction_from_light(const WholePath& path, const Vertex
 long double PathMeasure::between(const WholePath& path, const VertexPool& pool, int first,
                                  int last) const {
   long double lights = 1;  // density of sampling x_j ... x_{last-1} from the light
-  long double sum = joinable(path, pool, last - 1) ? 1 : 0;
+  long double sum = can_connect(path, pool, last - 1) ? 1 : 0;
   for (int j = last - 1; j > first; --j) {
     lights *= from_light(path, pool, j);
     sum *= from_eye(path, pool, j);
-    if (joinable(path, pool, j - 1)) sum += lights;
+    if (can_connect(path, pool, j - 1)) sum += lights;
   }
   return sum;
 }

@@ -82,7 +82,7 @@ bool PathSpaceMutation::propose(Chain& c, PathBuilder& builder) const {
   PartReplacement replacement(paths_);
   PathPerturbation perturbation(settings_);
   if (!build(c, builder, replacement, perturbation)) return false;
-  if (!builder.join(c.proposed) || !measure.evaluate(c.proposed, c.pool)) return false;
+  if (!builder.connect(c.proposed) || !measure.evaluate(c.proposed, c.pool)) return false;
   if (c.starting) {
     const auto contribution = static_cast<double>(c.proposed.luminance /
                                                   independent_density(measure, c.pool, c.proposed));

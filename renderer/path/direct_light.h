@@ -33,13 +33,13 @@ class DirectLight {
     return v.throughput * e->emission * static_cast<float>(w);
   }
 
-  /// Connects the connectible vertex `v` to a point that is sampled on an emitter; `ahead` is from
-  /// EmitterSelection. Calls `add(ray, value)` where the contribution is not black; `value`
+  /// Connects the connectible vertex `v` to a point that is sampled on an emitter; `preselected` is
+  /// from EmitterSelection. Calls `add(ray, value)` where the contribution is not black; `value`
   /// counts if the shadow ray `ray` is unoccluded.
   template <class Add>
-  [[gnu::flatten]] void sample(const Vertex& v, int depth, NextEvent::Ahead ahead, Rng& rng,
-                               Add&& add) const {
-    const EmitterPoint e = next_event_.sample(v, ahead, rng);
+  [[gnu::flatten]] void sample(const Vertex& v, int depth, NextEvent::Preselected preselected,
+                               Rng& rng, Add&& add) const {
+    const EmitterPoint e = next_event_.sample(v, preselected, rng);
     const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     const EmitterEndpoint light{e, guide_};
     if (const Connection c = connect(eye, light)) {

@@ -19,7 +19,7 @@ class EmitterSelection {
   /// depend on the vertex.
   void before(std::size_t i, int depth) {
     if (active_ && depth < max_depth_) {
-      selected_[i] = next_event_.choose_ahead(batch_.states[i].rng);
+      selected_[i] = next_event_.preselect(batch_.states[i].rng);
     }
   }
 
@@ -46,14 +46,14 @@ class EmitterSelection {
   }
 
   /// The emitter for the last vertex of path `i`.
-  const NextEvent::Ahead& of(std::size_t i) const { return selected_[i]; }
+  const NextEvent::Preselected& of(std::size_t i) const { return selected_[i]; }
 
  private:
   const NextEvent& next_event_;
   bool active_;
   int max_depth_;
   EyeBatch& batch_;
-  std::array<NextEvent::Ahead, EyeBatch::size> selected_{};
+  std::array<NextEvent::Preselected, EyeBatch::size> selected_{};
   // Here, so that they are initialised once for a batch and not at each of its vertices.
   std::array<PointwiseSelection::Request, EyeBatch::size> requests_;
   std::array<std::size_t, EyeBatch::size> path_of_{};

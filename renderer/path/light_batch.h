@@ -143,13 +143,13 @@ class LightBatch {
     return {vertex(i, index), index, Transport::importance, guide_};
   }
 
-  /// Joins all vertices of the first `paths` paths to the eye (t = 1) and appends the unoccluded
+  /// Connects all vertices of the first `paths` paths to the eye (t = 1) and appends the unoccluded
   /// contributions to `splats`.
   void splat(std::size_t paths, Counters& counters, Splats& splats) {
     const auto add = [&](const Ray& ray, const UnshadowedSplat& splat) { queue_.add(ray, splat); };
     for (std::size_t i = 0; i < paths; ++i) {
-      if (length_[i] > 0) join_eye(i, 0, add);
-      for_each_vertex(i, [&](std::size_t j, int index) { join_eye(j, index, add); });
+      if (length_[i] > 0) connect_to_eye(i, 0, add);
+      for_each_vertex(i, [&](std::size_t j, int index) { connect_to_eye(j, index, add); });
     }
     queue_.flush(setting_.scene.rays(), counters, [&](const UnshadowedSplat& p) {
       setting_.camera.splat(p.at, [&](std::uint32_t pixel, float share) {
@@ -165,14 +165,14 @@ class LightBatch {
     V2f at;        ///< on the film, in pixels
     std::uint16_t s;
   };
-  /// Joins vertex `index` in [0, length(i)) of path `i` to the eye (t = 1) and calls `joined(ray,
+  /// Connects vertex `index` in [0, length(i)) of path `i` to the eye (t = 1) and calls `use(ray,
   /// splat)` where the unoccluded contribution is not black.
-  template <class Joined>
-  void join_eye(std::size_t i, int index, Joined&& joined) const {
+  template <class Use>
+  void connect_to_eye(std::size_t i, int index, Use&& use) const {
     if (index == 0) {
-      if (!emitters_[i].delta()) join_eye(EmitterEndpoint{emitters_[i], guide_}, joined);
+      if (!emitters_[i].delta()) connect_to_eye(EmitterEndpoint{emitters_[i], guide_}, use);
     } else if (connectible(i, index)) {
-      join_eye(end(i, index), joined);
+      connect_to_eye(end(i, index), use);
     }
   }
 
@@ -271,18 +271,18 @@ class LightBatch {
     states_.push_back(w);
   }
 
-  template <class End, class Joined>
-  void join_eye(const End& light, Joined& joined) const {
+  template <class End, class Use>
+  void connect_to_eye(const End& light, Use& use) const {
     const EyeEndpoint eye{setting_.camera};
     const V3f to = at_infinity(light) ? light.x() : light.x() - eye.x();
     const std::optional<V2f> at = setting_.camera.project(to.normalized());
     if (!at) return;
     const Connection c = connect(eye, light);
     if (!c) return;
-    joined(shadow_ray(eye, light, c),
-           UnshadowedSplat{c.contribution / static_cast<float>(setting_.counts.splat),
-                           static_cast<float>(weight(eye, light, c, setting_.counts)), *at,
-                           static_cast<std::uint16_t>(light.index + 1)});
+    use(shadow_ray(eye, light, c),
+        UnshadowedSplat{c.contribution / static_cast<float>(setting_.counts.splat),
+                        static_cast<float>(weight(eye, light, c, setting_.counts)), *at,
+                        static_cast<std::uint16_t>(light.index + 1)});
   }
 
   const LightPathSetting& setting_;

@@ -26,37 +26,37 @@ class NextEvent {
   /// Whether the emitter is selected for each vertex anew.
   bool for_each_vertex() const { return pointwise_ != nullptr; }
   /// An emitter that was selected before its point is sampled.
-  struct Ahead {
+  struct Preselected {
     EmitterSet::Selected selected{.entry = none};
     float ratio = 1;  ///< EmitterPoint::next_event_ratio
   };
   /// Selects before the vertex is known, where its selection does not depend on it: called before
   /// the ray to it is traced. Requires emitters.
-  Ahead choose_ahead(Rng& rng) const {
-    return pointwise_ == nullptr ? Ahead{emitters_.choose(rng)} : Ahead{};
+  Preselected preselect(Rng& rng) const {
+    return pointwise_ == nullptr ? Preselected{emitters_.choose(rng)} : Preselected{};
   }
   /// Member by member: a copy of the whole would wait for its parts to be written.
-  static void set(Ahead& ahead, const PointwiseSelection::Choice& c) {
-    ahead.selected.entry = c.entry;
-    ahead.selected.at.x = c.at.x;
-    ahead.selected.at.y = c.at.y;
-    ahead.selected.at.u_select = c.at.u_select;
-    ahead.ratio = c.ratio;
+  static void set(Preselected& preselected, const PointwiseSelection::Choice& c) {
+    preselected.selected.entry = c.entry;
+    preselected.selected.at.x = c.at.x;
+    preselected.selected.at.y = c.at.y;
+    preselected.selected.at.u_select = c.at.u_select;
+    preselected.ratio = c.ratio;
   }
   /// Selects for many receivers at once.
   void choose(std::span<PointwiseSelection::Request> requests) const {
     pointwise_->choose(requests);
     for (const PointwiseSelection::Request& r : requests) emitters_.prefetch(r.result.entry);
   }
-  /// Samples a point on an emitter for the connectible vertex `v`, on the emitter `ahead` if one is
-  /// selected already.
-  EmitterPoint sample(const Vertex& v, Ahead ahead, Rng& rng) const {
-    if (ahead.selected.entry == none) {
+  /// Samples a point on an emitter for the connectible vertex `v`, on the emitter `preselected` if
+  /// one is selected already.
+  EmitterPoint sample(const Vertex& v, Preselected preselected, Rng& rng) const {
+    if (preselected.selected.entry == none) {
       const Rng::FinePoint at = rng.next_fine_point();
-      set(ahead, pointwise_->choose(receiver_at(v), at, rng));
+      set(preselected, pointwise_->choose(receiver_at(v), at, rng));
     }
-    EmitterPoint e = emitters_.sample(ahead.selected);
-    e.next_event_ratio = ahead.ratio;
+    EmitterPoint e = emitters_.sample(preselected.selected);
+    e.next_event_ratio = preselected.ratio;
     return e;
   }
   /// EmitterPoint::next_event_ratio of the point `e`, sampled in another way, for the connectible

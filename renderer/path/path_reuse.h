@@ -62,7 +62,7 @@ class PathReuse {
   /// What path `i` would give its pixel of a unit that goes to add(), if it did not share.
   Rgb own(std::size_t i) const { return shares(i) ? carried_[batch_.origin[i]] : Rgb(1, 1, 1); }
   /// Next event estimation at vertex 2 of path `i` looks in unit direction `w`.
-  void look(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
+  void set_next_event_direction(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
   /// What path `i` gathers: by next event estimation at vertex 2, or at vertices behind it.
   void add(std::size_t i, int depth, const Rgb& value) {
     if (is_finite(value)) {
@@ -96,7 +96,7 @@ class PathReuse {
         // A delta lobe of vertex 2 scatters to no other pixel.
         if (v.delta) add(pixel_of_[j], carried_[j] * std::exchange(far_[j], Rgb(0, 0, 0)));
         if (is_black(near_[j]) && is_black(far_[j])) continue;
-        join(j, group);
+        connect_to_group(j, group);
         trace(caster, counters);
         distribute(j, add);
       }
@@ -120,7 +120,7 @@ class PathReuse {
   void begin_sharing(std::size_t i) {
     const Vertex& first = batch_.vertex(i, 1);
     Vertex& v = batch_.vertex(i, 2);
-    if (!joinable(first) || first.delta || !joinable(v)) return;
+    if (!is_connectible_surface(first) || first.delta || !is_connectible_surface(v)) return;
     PathState& state = batch_.states[i];
     carried_[i] = v.throughput;
     state.throughput = v.throughput = Rgb(1, 1, 1);
@@ -129,12 +129,12 @@ class PathReuse {
     shares_[i] = true;
     near_[i] = far_[i] = Rgb(0, 0, 0);
   }
-  static bool joinable(const Vertex& v) {
+  static bool is_connectible_surface(const Vertex& v) {
     return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
   }
 
   /// The edges from vertex 2 of path `j` to vertex 1 of all paths of its group, first its own.
-  void join(std::size_t j, std::span<const std::uint8_t> group) {
+  void connect_to_group(std::size_t j, std::span<const std::uint8_t> group) {
     const Vertex& v = batch_.vertex(j, 2);
     // The walk's throughput is f |cos| / p.
     const double p = double(v.p_fwd.value);
@@ -144,7 +144,7 @@ class PathReuse {
     const VertexPlace to{v};
     for (const std::size_t k : group) {
       const Vertex& first = batch_.vertex(k, 1);
-      if (k == j || !joinable(first)) continue;
+      if (k == j || !is_connectible_surface(first)) continue;
       const SurfaceEndpoint from{first, 1, Transport::radiance, guide_};
       const Connection c = edge_between(from, to);
       if (!(c.distance2 > 0)) continue;

@@ -113,9 +113,9 @@ class Walk {
 
   void trace(PathState& w, Hit& hit) {
     ++counters_.rays;
-    const bool met = scene_.rays().intersect(w.ray, hit);
-    vertex(w, w.depth).kind = met ? Vertex::Kind::surface : Vertex::Kind::background;
-    if (met) scene_.prefetch(hit);
+    const bool is_hit = scene_.rays().intersect(w.ray, hit);
+    vertex(w, w.depth).kind = is_hit ? Vertex::Kind::surface : Vertex::Kind::background;
+    if (is_hit) scene_.prefetch(hit);
   }
 
   /// trace() of all first edges, eight at a time. In a packet the nearest of two triangles that a
@@ -124,17 +124,17 @@ class Walk {
   void trace_first(std::span<PathState> states) {
     constexpr std::size_t together = 8;
     std::array<Ray, together> rays;
-    std::array<std::uint8_t, together> met{};
+    std::array<std::uint8_t, together> is_hit{};
     counters_.rays += states.size();
     for (std::size_t first = 0; first < states.size(); first += together) {
       const std::span<PathState> some =
           states.subspan(first, std::min(together, states.size() - first));
       for (std::size_t k = 0; k < some.size(); ++k) rays[k] = some[k].ray;
       const std::span<Hit> hits = std::span(hits_).subspan(first, some.size());
-      scene_.rays().intersect(std::span(rays).first(some.size()), hits, met);
+      scene_.rays().intersect(std::span(rays).first(some.size()), hits, is_hit);
       for (std::size_t k = 0; k < some.size(); ++k) {
-        vertex(some[k], 1).kind = met[k] != 0 ? Vertex::Kind::surface : Vertex::Kind::background;
-        if (met[k] == 0) continue;
+        vertex(some[k], 1).kind = is_hit[k] != 0 ? Vertex::Kind::surface : Vertex::Kind::background;
+        if (is_hit[k] == 0) continue;
         scene_.prefetch(hits[k]);
       }
     }
