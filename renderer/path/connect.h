@@ -45,8 +45,8 @@ Connection edge_between(const Eye& eye, const Light& light) {
   return c;
 }
 
-/// Joins the endpoints `eye` and `light`. The result is false where the unoccluded contribution is
-/// black.
+/// Connects the endpoints `eye` and `light`. The result converts to false if the unoccluded
+/// contribution is black.
 template <class Eye, class Light>
 Connection connect(const Eye& eye, const Light& light) {
   Connection c = edge_between(eye, light);
@@ -71,7 +71,7 @@ Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
   return {from, light.end(-c.w, c.distance) - from, 1.0F};
 }
 
-/// Density with which the eye's walk would continue along the connection.
+/// Density per steradian with which the walk from the eye would continue along the connection.
 template <class Eye>
 double eye_pdf(const Eye& eye, const Connection& c) {
   if constexpr (requires { eye.pdf(c.w, *c.eye_bsdf_pdf); }) {
@@ -135,8 +135,9 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
 }
 
 /// The MIS weight of an eye path whose vertex `v`, at `index` >= 1, is the point `e` on an emitter
-/// (s = 0). EmitterPoint::next_event_ratio must be the one for the vertex before it, if that is
-/// connectible and not the eye. `guide`: of the light paths that the hit is weighed against.
+/// (s = 0). If the vertex before it is connectible and not the eye, `e.next_event_ratio` must be
+/// the ratio for that vertex. `guide`: the guide of light paths, for the density of their first
+/// edge.
 inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n,
                          const Guide& guide) {
   const double one_less = n.of(1, index);

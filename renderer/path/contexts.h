@@ -24,10 +24,10 @@ struct IterationContext {
   const ThreadPool& pool;
   std::uint64_t seed;
   std::uint64_t iteration;  ///< < 2^32
-  /// Called by several threads, between tiles, batches of paths and whatever else may take a
-  /// second. When it returns true, IterationStopped is thrown.
+  /// Returns whether to stop; IterationStopped is then thrown. Several threads call it, at least
+  /// about once a second: between tiles, between batches of paths, and within longer steps.
   const std::function<bool()>& stop;
-  /// One image for each layer that the integrator fills: black at first, of the picture's size.
+  /// One image for each layer that the integrator fills: of the picture's size, black at first.
   std::span<Image> layers = {};
   Sampler sampler = Sampler::independent;
 
@@ -35,20 +35,20 @@ struct IterationContext {
     if (stop()) throw IterationStopped{};
   }
 
-  /// The random numbers of path `path` < 2^56 of this iteration. With `sobol` the paths of this
-  /// number share a sequence over iterations.
+  /// The random numbers of path `path` < 2^56 of this iteration. With Sampler::sobol, the paths of
+  /// this number in all even (or all odd) iterations are the points of one sequence.
   Rng path_numbers(std::uint64_t path, Rng::Purpose purpose) const {
     return path_numbers(path, 0, 1, purpose);
   }
-  /// The same of path `k` of `n`, a power of two, that pixel `path` has in each iteration: with
-  /// `sobol` all of them are one sequence.
+  /// The same for path `k` < `n` of pixel `path`, which has `n` paths in each iteration, a power of
+  /// two: with Sampler::sobol, all of them are points of the pixel's sequence.
   Rng path_numbers(std::uint64_t path, std::uint64_t k, std::uint64_t n,
                    Rng::Purpose purpose) const {
     if (sampler == Sampler::independent) return Rng(seed, iteration, path * n + k, purpose);
     return Rng::of_sequence(seed, path, half(), sample() * n + k, purpose);
   }
-  /// The same of one of `paths` whose contributions go to the whole picture. With `sobol` all of
-  /// them are one sequence, over iterations.
+  /// The same for path `path` < `paths`, which contributes to the whole picture: with
+  /// Sampler::sobol, all of these paths are points of one sequence.
   Rng shared_path_numbers(std::uint64_t path, std::uint64_t paths, Rng::Purpose purpose) const {
     if (sampler == Sampler::independent) return Rng(seed, iteration, path, purpose);
     constexpr std::uint64_t shared = (std::uint64_t{1} << 56) - 1;  // no path has this number
@@ -61,7 +61,8 @@ struct IterationContext {
   std::uint64_t sample() const { return iteration / 2; }
 };
 
-/// Asks whether to stop at one of 64 calls: asking reads a clock, which a short step must not pay.
+/// Calls IterationContext::check_stop() at every 64th call of check(): it reads a clock, which
+/// takes too long for a short step.
 class SparseStop {
  public:
   void check(const IterationContext& context) {
@@ -73,7 +74,7 @@ class SparseStop {
 };
 
 /// The inputs of prepare(), before the first iteration. `space` builds an artefact of the analysis
-/// when it is first requested. Loops ask `pool` whether to stop (ThreadPool::check_stop()).
+/// when it is first requested. Long loops call ThreadPool::check_stop().
 struct PrepareContext {
   const Scene& scene;
   const ThreadPool& pool;

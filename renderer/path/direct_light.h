@@ -34,8 +34,8 @@ class DirectLight {
   }
 
   /// Connects the connectible vertex `v` to a point that is sampled on an emitter; `preselected` is
-  /// from EmitterSelection. Calls `add(ray, value)` where the contribution is not black; `value`
-  /// counts if the shadow ray `ray` is unoccluded.
+  /// from EmitterSelection. If the contribution is not black, calls `add(ray, value, w)`: `value`
+  /// counts if the shadow ray `ray` is unoccluded, and `w` is the unit direction to the point.
   template <class Add>
   [[gnu::flatten]] void sample(const Vertex& v, int depth, NextEvent::Preselected preselected,
                                Rng& rng, Add&& add) const {

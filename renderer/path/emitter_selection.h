@@ -7,24 +7,24 @@
 
 namespace lacuna {
 
-/// The emitters that next event estimation selects for the vertices of a batch of eye paths, one at
-/// a time for each path: a selection of Walk::trace_paths().
+/// Selects the emitters of next event estimation for the vertices of a batch of eye paths; stores
+/// one for the last vertex of each path. It is the `selection` of Walk::trace_paths().
 class EmitterSelection {
  public:
-  /// Selects for vertices of fewer than `max_depth` edges; for none without `active`.
+  /// Selects for vertices fewer than `max_depth` edges from the eye; for none unless `active`.
   EmitterSelection(const NextEvent& next_event, bool active, int max_depth, EyeBatch& batch)
       : next_event_(next_event), active_(active), max_depth_(max_depth), batch_(batch) {}
 
-  /// Before the ray to vertex `depth` of path `i` is traced: selects, if the selection does not
-  /// depend on the vertex.
+  /// Called before the ray to vertex `depth` of path `i` is traced. Selects if the selection does
+  /// not depend on the vertex.
   void before(std::size_t i, int depth) {
     if (active_ && depth < max_depth_) {
       selected_[i] = next_event_.preselect(batch_.states[i].rng);
     }
   }
 
-  /// Whether each vertex has a selection of its own. Descents through a light tree wait for memory:
-  /// those of many vertices wait together.
+  /// Whether the selection depends on the vertex. Then choose() descends the light tree for many
+  /// vertices at once, which hides the latency of memory.
   bool together() const { return active_ && next_event_.for_each_vertex(); }
   /// Selects for the last vertices of `paths`.
   void choose(std::span<const std::size_t> paths) {
@@ -54,7 +54,7 @@ class EmitterSelection {
   int max_depth_;
   EyeBatch& batch_;
   std::array<NextEvent::Preselected, EyeBatch::size> selected_{};
-  // Here, so that they are initialised once for a batch and not at each of its vertices.
+  // A member, so that it is initialised once and not at each vertex.
   std::array<PointwiseSelection::Request, EyeBatch::size> requests_;
   std::array<std::size_t, EyeBatch::size> path_of_{};
 };

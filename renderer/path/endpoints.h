@@ -11,18 +11,18 @@ namespace lacuna {
 // The endpoints of a connecting edge: a surface vertex, a point on an emitter, or the eye. All have
 // the members that connect.h uses; directions are unit and point away from the endpoint.
 
-/// Where a vertex of any kind is: for the geometry of an edge alone.
+/// The position of a vertex of any kind, for edge_between() and shadow_ray().
 struct VertexPlace {
   const Vertex& v;
 
   bool infinite() const { return v.kind == Vertex::Kind::background; }
   const V3f& x() const { return v.surface.x; }
-  /// The origin of a ray along `w`. The eye and points in space have no surface: it is not moved.
-  /// (Those that lie in a surface: EmitterPoint::origin().)
+  /// The origin of a ray along `w`, offset from the surface. The eye and emitters in space have no
+  /// surface and no offset. (Point lights that touch a surface: EmitterPoint::origin().)
   V3f origin(const V3f& w) const {
     return offset_origin(v.surface.x, v.surface.ng, v.surface.offset, w);
   }
-  /// The end of a segment of that length that arrives along -`w`.
+  /// The end, offset from the surface, of a segment of length `distance` along -`w`.
   V3f end(const V3f& w, float distance) const {
     return offset_end(v.surface.x, v.surface.ng, v.surface.offset, w, distance);
   }
@@ -39,16 +39,16 @@ struct SurfaceEndpoint {
   const V3f& x() const { return v.surface.x; }
   /// throughput f(wp, w) |cos|: what the path scatters along `w`.
   Rgb scatter(const V3f& w) const { return v.throughput * v.bsdf->eval(v.wp, w, transport); }
-  /// scatter(), and the density of `w` by the BSDF, which comes with it; where the surface scatters
-  /// nothing, that may be left at 0.
+  /// The same, and sets `bsdf` to the density of `w` by the BSDF, which Bsdf::evaluate() computes
+  /// with little extra work. If the result is black, `bsdf` may be 0.
   Rgb scatter(const V3f& w, Pdf<SolidAngle>& bsdf) const {
     const Bsdf::Evaluated e = v.bsdf->evaluate(v.wp, w, transport);
     bsdf = e.pdf;
     return v.throughput * e.value;
   }
-  /// Density per steradian with which this walk would continue along `w`; where that by the BSDF is
-  /// known, from there.
+  /// Density per steradian with which this walk would continue along `w`.
   double pdf(const V3f& w) const { return guide.pdf(v, v.wp, w, transport).value; }
+  /// The same, given the density of `w` by the BSDF.
   double pdf(const V3f& w, Pdf<SolidAngle> bsdf) const {
     return guide.pdf(v, v.wp, w, transport, bsdf).value;
   }
@@ -67,7 +67,7 @@ struct SurfaceEndpoint {
   bool prev_connectible() const { return v.prev_connectible; }
   /// The origin of a ray along `w`, offset from the surface.
   V3f origin(const V3f& w) const { return VertexPlace{v}.origin(w); }
-  /// The end of a segment of that length that arrives along -`w`, offset from the surface.
+  /// The end of a segment of length `distance` along -`w`, offset from the surface.
   V3f end(const V3f& w, float distance) const { return VertexPlace{v}.end(w, distance); }
 };
 
@@ -85,7 +85,8 @@ struct EmitterEndpoint {
     const float cosine = e.kind == EmitterPoint::Kind::area ? abs_dot(e.ng, w) : 1.0F;
     return e.towards(w) * (cosine / p.value);
   }
-  /// Times the density of the point on light paths over p_fwd().
+  /// Density per steradian with which a light path leaves the point along `w`, times the density of
+  /// the point on light paths over p_fwd().
   double pdf(const V3f& w) const {
     return double(guide.pdf_Le(e, w).value) / double(e.next_event_ratio);
   }
@@ -93,6 +94,7 @@ struct EmitterEndpoint {
   double area_factor(const V3f& w) const {
     return e.kind == EmitterPoint::Kind::area ? double(abs_dot(e.ng, w)) : 1.0;
   }
+  /// Density with which the point was sampled. Light paths leave next_event_ratio at 1.
   double p_fwd() const { return double(e.next_event_pdf().value); }
   static double next_event_ratio() { return 1; }
   static double mis_partial() { return 0; }

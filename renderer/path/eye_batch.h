@@ -16,7 +16,8 @@ struct EyeBatch {
     states.reserve(size);
   }
 
-  /// Adds a path: `ray` is the camera ray through `pixel`, `rng` draws everything after it.
+  /// Adds a path: `ray` is the camera ray through `pixel`; `rng` supplies the random numbers of all
+  /// later edges.
   void start(const Camera& camera, const Rng& rng, const Ray& ray, std::size_t pixel) {
     const std::size_t i = states.size();
     const std::span<Vertex> path = std::span(vertices).subspan(i * stride, stride);
@@ -38,9 +39,9 @@ struct EyeBatch {
     branches.clear();
   }
 
-  /// Replaces the paths by stored branches, as many as fit; vertices before those where they
-  /// branched off stay. False if there are none. Requires that all contributions of the paths are
-  /// gathered.
+  /// Replaces the paths by stored branches, as many as fit; false if there are none. Only the
+  /// vertex at which a branch begins is written: the vertices before it stay those of the path that
+  /// had its index before. Call when all contributions of the current paths have been added.
   bool resume() {
     states.clear();
     while (!pending_.empty() && states.size() < size) {

@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// The contributions that each vertex of a batch's paths made to its pixel. When the paths are
-/// finished, the light that arrived at a vertex is the sum over the vertices behind it.
+/// The contributions of each vertex of a batch's paths to the path's pixel. When the paths have
+/// ended, the light that arrived at a vertex is the sum of the contributions of all later vertices.
 class GatheredLight {
  public:
   explicit GatheredLight(const EyeBatch& batch) : batch_(batch) {}
@@ -23,7 +23,7 @@ class GatheredLight {
       first_[i] = last_[i] = batch_.states[i].depth;
     }
   }
-  /// Path `i` has reached its vertex `depth`.
+  /// Call when path `i` has reached its vertex `depth`.
   void reach(std::size_t i, int depth) {
     last_[i] = depth;
     split_[index(i, depth)] = batch_.states[i].roulette.split;
@@ -33,8 +33,8 @@ class GatheredLight {
     if (is_finite(value)) light_[index(i, depth)] += value;
   }
 
-  /// Appends a sample for every connectible vertex. A path that was split represents all of its
-  /// parts: its later contributions are multiplied by their number.
+  /// Appends a training sample for each connectible vertex. A path that was split stands for all of
+  /// its parts: its later contributions are multiplied by their number.
   void record(std::vector<TrainingSample>& samples) const {
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
       Rgb behind(0, 0, 0);
@@ -50,7 +50,7 @@ class GatheredLight {
     return i * batch_.stride + static_cast<std::size_t>(depth);
   }
 
-  /// Of vertex `depth` of path `i`; `behind`: the contributions of those behind it.
+  /// Appends the sample of vertex `depth` of path `i`. `behind`: contributions of later vertices.
   void record(std::size_t i, int depth, const Rgb& behind,
               std::vector<TrainingSample>& samples) const {
     const Vertex& v = batch_.vertex(i, depth);

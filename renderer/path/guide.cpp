@@ -7,8 +7,9 @@ namespace lacuna {
 
 namespace {
 
-/// From as many numbers as the BSDF takes, so that those of what follows stay evenly spread. The
-/// bits of `x` beyond the first 32 are those of `u_select`, scrambled.
+/// A FinePoint from three random numbers, as many as sampling the BSDF takes, so that later numbers
+/// keep their dimensions in a low-discrepancy sequence. The low 32 bits of `x` are those of
+/// `u_select`, scrambled.
 Rng::FinePoint fine_point(Rng& rng) {
   const auto [choice, point] = rng.next_choice_and_point();
   const auto bits = static_cast<std::uint64_t>(choice * 0x1p48);
@@ -21,7 +22,7 @@ Rng::FinePoint fine_point(Rng& rng) {
   return {std::uint64_t{whole(point.x, bits >> 8)} << 32 | low, whole(point.y, bits), u_select};
 }
 
-/// True with probability `c`, by uniform `u` of 2^64, which gets what is left.
+/// True with probability `c`, by `u`, uniform of 2^64. Afterwards `u` is rescaled to be uniform.
 bool choose(std::uint64_t& u, double c) {
   const double at = static_cast<double>(u) * 0x1p-64;
   const bool chosen = at < c || c >= 1;
@@ -78,7 +79,7 @@ std::vector<std::pair<std::string, double>> Guide::statistics() const {
   return all;
 }
 
-/// One of so many groups of paths gives training samples in this iteration, >= 1.
+/// The number of blocks of which one records training samples in this iteration, >= 1.
 double Guide::share(const IterationContext& context, int edges) const {
   if (share_ > 0) return share_;
   const double pixels = double(context.camera.width()) * double(context.camera.height());
@@ -121,7 +122,7 @@ GuidingCell Guide::cell_at(const Vertex& v, const V3f& wo, Transport transport) 
   return cell;
 }
 
-/// The same where the vertex may know it.
+/// The same, from the vertex if it stores the cell of this side.
 GuidingCell Guide::cell_of(const Vertex& v, const V3f& wo, Transport transport) const {
   const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
   if (transport == Transport::radiance && this_side) return v.guiding_cell;
@@ -134,7 +135,7 @@ std::optional<BsdfSample> Guide::sample_mixture(const Vertex& v, Rng& rng,
   const float c = cell.probability;
   if (c == 0) return sample_bsdf(v, rng, transport);
   const GuidedVertex at{v.surface, *v.bsdf, v.wp, cell};
-  // One point chooses and places, so that the points of both stay evenly spread.
+  // One point selects the distribution and samples from it, so that both stay stratified.
   Rng::FinePoint u = fine_point(rng);
   if (choose(u.x, double(c))) {
     const std::optional<V3f> w = of(transport)->sample(at, u, rng);

@@ -15,14 +15,14 @@ namespace lacuna {
 ///
 ///     p = c p_guide + (1 - c) p_bsdf,
 ///
-/// which makes the weight the balance heuristic. c is a setting, or LearnedProbability. Delta lobes
-/// are sampled by the BSDF alone; where c is 1 they are lost, and so is what the distribution
-/// misses. Paths from the eye and paths from the lights have a distribution each, or none, and then
-/// follow the BSDF. pdf() takes the transport, so each walk can evaluate the densities of the
-/// other. Only the distribution of eye paths learns.
+/// which makes the weight the balance heuristic. c is a setting or LearnedProbability, at most .9;
+/// the biased setting `guide_only` makes it 1, and the directions that the distribution does not
+/// cover are then never sampled. Delta lobes are sampled by the BSDF alone.
 ///
-/// Light paths are guided from their first edge on, but for emitters without area and those that
-/// emit on both sides.
+/// Eye paths and light paths have one distribution each; without one, they sample the BSDF. pdf()
+/// takes the transport, so each walk can evaluate the densities of the other. Only the distribution
+/// of eye paths learns. The first edge of a light path is guided too, except from emitters without
+/// area and from those that emit on both sides.
 class Guide {
  public:
   /// Either may be null: those paths follow the BSDF.
@@ -39,61 +39,63 @@ class Guide {
   void load(ByteReader& in);
   std::vector<std::pair<std::string, double>> statistics() const;
 
-  /// Whether paths of this transport do not follow the BSDF alone.
+  /// Whether paths of this transport have a distribution.
   bool guides(Transport transport) const { return of(transport) != nullptr; }
 
   /// Whether update() needs training samples of the coming iteration.
   bool learns() const {
     return eye_ && (eye_->learns() || !fixed_probability_ || reflected_.learns());
   }
-  /// Whether the paths of the block of 8 x 8 pixels of `pixel` give training samples: none where
-  /// the guide does not learn, a share of a large picture's, so that an iteration keeps about
-  /// most_samples. `edges`: the maximum of a path.
+  /// Whether the paths of the block of 8 x 8 pixels around `pixel` record training samples in this
+  /// iteration. False if the guide does not learn. In a large picture only a fraction of the blocks
+  /// does, so that an iteration records about most_samples. `edges`: the maximum of a path.
   bool learns_from(const V2i& pixel, const IterationContext& context, int edges) const;
   static constexpr double most_samples = 1 << 20;  ///< 72 MiB
-  /// The first pass of an iteration. update() needs the samples of each.
+  /// The first pass of an iteration. Call update() after each pass.
   LearningPass first_pass() const { return LearningPass::begin(learns() && share_ == 0); }
-  /// Learns from the samples of a pass, one part for each part of its work.
+  /// Learns from the samples of `pass`: one part for each tile, in their order.
   void update(std::span<const TrainingSamples::Part> parts, const LearningPass& pass,
               const IterationContext& context, int edges);
 
-  /// The luminance that an eye path of throughput 1 is expected to gather behind `v`, connectible;
-  /// below 0 while that is unknown.
+  /// The luminance that an eye path is expected to gather at vertices after the connectible vertex
+  /// `v`, over the luminance of its throughput at `v`; below 0 while nothing has been learned.
   float expected(const Vertex& v) const { return reflected_.at(v); }
 
-  /// Prefetches what on_hit() reads of `v`, whose surface and wp are known.
+  /// Prefetches what on_hit() reads. Requires the surface and wp of `v`.
   void prefetch(const Vertex& v) const {
     if (eye_) eye_->prefetch(v.surface, v.wp);
   }
-  /// Looks up the guiding cell of `v` for eye paths, on the side of v.wp. That for light paths is
-  /// looked up where it is needed: all paths would carry it, few are guided so.
+  /// Looks up the guiding cell of `v` for eye paths, on the side of v.wp. The cell for light paths
+  /// is looked up on demand: light paths are seldom guided, and each Vertex would have to store it.
   void on_hit(Vertex& v) const {
     if (eye_) v.guiding_cell = cell_at(v, v.wp, Transport::radiance);
   }
 
-  /// A direction with its weight f |cos| / p and its density; nothing where the sample fails.
+  /// Samples a direction, with its weight f |cos| / p and its density; none if the sample fails.
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
     if (of(transport) == nullptr) return sample_bsdf(v, rng, transport);
     return sample_mixture(v, rng, transport);
   }
   /// Density with which sample() returns unit `wi`, for a walk of the given transport that arrived
-  /// at `v` from unit `wo`; of any `wo`, as MIS weights need it. Its integral over the sphere is 1
-  /// less the probability of failure. It is above 0 wherever the BSDF's is.
+  /// at `v` from unit `wo`. MIS weights need it for any `wo`, not only for v.wp. Its integral over
+  /// the sphere is 1 less the probability of failure. If c < 1, it is above 0 wherever the BSDF's
+  /// is.
   Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
     return pdf(v, wo, wi, transport, v.bsdf->pdf(wo, wi, transport));
   }
-  /// The same where the density of `wi` by the BSDF is known.
+  /// The same, given the density of `wi` by the BSDF.
   Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport,
                       Pdf<SolidAngle> bsdf) const {
     if (of(transport) == nullptr) return bsdf;
     return mixed({v.surface, *v.bsdf, wo, cell_of(v, wo, transport)}, wi, transport, bsdf);
   }
 
-  /// The first edge of a light path from the point `e` on one of `lights`. A surface emits as a
-  /// white Lambertian one scatters what arrives along its normal, but for the factor pi.
+  /// Samples the first edge of a light path from the point `e` on one of `lights`. A guided emitter
+  /// is treated as a white Lambertian surface that light reaches along its normal: its radiance
+  /// times |cos| is pi times what that surface scatters.
   std::optional<LightLeSample> sample_Le(const EmitterSet& lights, const EmitterPoint& e,
                                          Rng& rng) const;
-  /// Density of unit `w` with which sample_Le() leaves `e`, as EmitterPoint::pdf_Le().
+  /// Density of unit `w` in sample_Le() from `e`; in the measure of EmitterPoint::pdf_Le().
   Pdf<SolidAngle> pdf_Le(const EmitterPoint& e, const V3f& w) const;
 
  private:
@@ -122,7 +124,7 @@ class Guide {
   std::optional<double> fixed_probability_, fixed_light_probability_;
   LearnedProbability probability_;  // of eye_, unless it is fixed
   ReflectedRadiance reflected_;
-  double share_ = 0;  // one of so many groups of paths gives samples; 0: not known yet
+  double share_ = 0;  // one block of `share_` records samples; 0: no iteration has ended yet
   Lobes white_{SurfaceParams{.f0 = Rgb(0, 0, 0), .f90 = 0}};
 };
 

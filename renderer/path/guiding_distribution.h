@@ -30,7 +30,7 @@ class GuidingDistribution {
  public:
   virtual ~GuidingDistribution() = default;
 
-  /// Called by the integrator's functions of these names (see the concept Strategy).
+  /// The functions of the concept Strategy.
   virtual bool needs_space() const = 0;
   virtual void prepare(const PrepareContext&) {}
   virtual void save(ByteWriter&) const {}
@@ -43,9 +43,10 @@ class GuidingDistribution {
   virtual GuidingCell cell(const Surface& s, const V3f& w) const = 0;
   /// Prefetches what cell() of the same arguments reads first.
   virtual void prefetch(const Surface&, const V3f&) const {}
-  /// Samples a unit direction by the uniform point `u`, and `rng` if that is not enough; nothing
-  /// where the sample fails. Requires a cell whose probability is above 0. A direction that changes
-  /// continuously with `u` nearly everywhere keeps points evenly spread (Sampler::sobol).
+  /// Samples a unit direction by the uniform point `u`, and by `rng` if more numbers are needed;
+  /// none if the sample fails. Requires a cell whose probability is above 0. The direction should
+  /// be a continuous function of `u` nearly everywhere: that keeps the stratification of
+  /// Sampler::sobol.
   virtual std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng& rng) const = 0;
   /// Density with which sample() returns unit `w`. Its integral over the sphere is 1 less the
   /// probability of failure. sample() returns a direction of density 0 only by rounding.
@@ -58,8 +59,8 @@ class GuidingDistribution {
   virtual AutoNumber probability() const = 0;
   /// Whether update() needs to be called after the coming iteration.
   virtual bool learns() const { return false; }
-  /// Learns from the samples of an iteration. Returns, for each cell that was added, the cell that
-  /// it was divided from.
+  /// Learns from the samples of a pass. Returns, for each cell that was added, the cell that it was
+  /// split off from.
   virtual std::vector<std::uint32_t> update(const TrainingSamples&, const ThreadPool&) {
     return {};
   }

@@ -11,16 +11,16 @@
 namespace lacuna {
 
 /// A pass of an iteration, after which a guide learns. The first iteration is divided: its first
-/// pass renders 1/64 of the blocks of 8 x 8 pixels, each of the others as many as all before it, so
-/// that most of its paths use what earlier ones learned. Later iterations are one pass.
+/// pass renders 1/64 of the blocks of 8 x 8 pixels, each later pass as many as all passes before
+/// it, so that earlier passes guide most of its paths. Later iterations are one pass.
 struct LearningPass {
   static constexpr int parts = 64;
 
   int first = 0, end = parts;  ///< of the parts that the pass renders
 
   double share() const { return double(end - first) / parts; }
-  /// Whether the pass renders the block whose first pixel is `x`, `y`. Parts are spread over the
-  /// picture at random.
+  /// Whether the pass renders the block whose first pixel is `x`, `y`. Each block belongs to one of
+  /// the parts, selected at random.
   bool renders(int x, int y) const {
     if (first == 0 && end == parts) return true;
     const auto block = static_cast<std::uint64_t>(x / 8) << 28 | static_cast<std::uint64_t>(y / 8);
@@ -36,7 +36,7 @@ struct LearningPass {
 /// as long as all before it.
 class LearningRounds {
  public:
-  /// Counts a pass of this share of an iteration. True: the round has ended.
+  /// Adds a pass that rendered `share` of an iteration. True if it ends the round.
   bool add(double share) {
     if (first_ == 0) first_ = share;
     done_ += share;
@@ -46,9 +46,9 @@ class LearningRounds {
     return true;
   }
   std::uint64_t ended() const { return ended_; }
-  /// Of this round, in iterations; 0 before the first pass.
+  /// Length of the current round, in iterations; 0 before the first pass.
   double length() const { return std::ldexp(first_, std::max(0, static_cast<int>(ended_) - 1)); }
-  /// Of the round that has ended.
+  /// Length of the round that ended last, in iterations.
   double last_length() const {
     return std::ldexp(first_, std::max(0, static_cast<int>(ended_) - 2));
   }
@@ -70,7 +70,7 @@ class LearningRounds {
   }
 
  private:
-  double first_ = 0, done_ = 0;  // iterations in the first round, and so far in this one
+  double first_ = 0, done_ = 0;  // iterations: of the first round, and so far of the current one
   std::uint64_t ended_ = 0;
 };
 

@@ -16,18 +16,18 @@ struct LightPathSetting {
   const Scene& scene;
   const Camera& camera;
   int max_depth;       ///< edges of whole paths, the one to the eye included
-  int roulette_depth;  ///< as WalkLimits
+  int roulette_depth;  ///< WalkLimits::roulette_depth
   SampleCounts counts;
-  /// Choose the emitters of an iteration's paths by systematic sampling: at equal steps from a
+  /// Select the emitters of an iteration's paths by systematic sampling: at equal steps from a
   /// random start. Each path alone has the same distribution; together they are stratified.
   bool spread = false;
-  /// How the strategy s = 1 selects emitters; where it does, counts.nee > 0.
+  /// How next event estimation (s = 1) selects emitters. Used if counts.nee > 0.
   EmitterChoice next_event = EmitterChoice::power;
 };
 
-/// At most `size` light paths that are traced together. Path i of the batch has index i throughout.
-/// Guided paths are split where their weight has grown (Walk). A branch has an index of its own,
-/// >= `size`, and the first vertices of the path that was split.
+/// At most `size` light paths that are traced together; path i has index i throughout. Guided paths
+/// may be split (Roulette): each branch has an index of its own, >= `size`, and shares its first
+/// vertices with the path that was split.
 class LightBatch {
  public:
   static constexpr int size = 64;  // their vertices fit the second-level cache
@@ -42,9 +42,9 @@ class LightBatch {
     states_.reserve(size);
   }
 
-  /// Traces one path for each generator. A path that no emitter could start has length 0.
-  /// `choices`: 32 uniform bits for each path that choose its emitter; empty: drawn from `rngs`.
-  /// `wanted`: the most vertices of each path, >= 1; empty: as many as max_depth allows.
+  /// Traces one path for each generator. Without emitters, paths have length 0. `choices`: 32
+  /// uniform bits for each path, which select its emitter; empty: taken from `rngs`. `wanted`: the
+  /// largest number of vertices of each path, >= 1; empty: LightPathSetting::max_depth.
   void walk(std::span<const Rng> rngs, Counters& counters,
             std::span<const std::uint32_t> choices = {}, std::span<const int> wanted = {}) {
     clear();
@@ -74,14 +74,15 @@ class LightBatch {
     });
     trace_branches(walk);
   }
-  /// Forgets all branches: call before restore() of all paths.
+  /// Removes all branches. Call before restore() of the paths of a batch.
   void clear() {
     branches_.clear();
     for (auto& of_path : branches_of_) of_path.clear();
   }
 
-  /// Makes path `i` the one that had these vertices, in the order of for_each_vertex(), each with
-  /// its hit() beside it. The others are not connectible; vertex 0 is left as it is.
+  /// Restores path `i` and its branches from the photons of their vertices, in the order of
+  /// for_each_vertex(), and the hit() of each. Vertices without a photon become vertices that are
+  /// not connectible. Vertex 0 does not change.
   void restore(std::size_t i, std::span<const Photon> photons, std::span<const Hit> hits) {
     length_[i] = 1;
     std::size_t path = i;
@@ -104,10 +105,10 @@ class LightBatch {
 
   /// Number of vertices of path `i`, including the one on the emitter.
   int length(std::size_t i) const { return i < size ? length_[i] : branch(i).length; }
-  /// The first vertex that a branch does not share with the path that was split; of others 1.
+  /// The first vertex that a branch does not share with the path that was split; 1 if `i` is none.
   int first(std::size_t i) const { return i < size ? 1 : branch(i).first; }
-  /// Calls `use(j)` for path `i` < size and all its branches, of which each comes after the path
-  /// that was split.
+  /// Calls `use(j)` for path `i` < size and for all its branches; each branch follows the path that
+  /// was split.
   template <class Use>
   void for_each_branch(std::size_t i, Use&& use) const {
     use(i);
@@ -134,7 +135,7 @@ class LightBatch {
     const std::optional<Bsdf>& bsdf = vertex(i, index).bsdf;
     return bsdf && bsdf->connectible();
   }
-  /// Of the ray to a vertex, index >= first(i).
+  /// The hit of the ray to vertex `index` >= first(i).
   const Hit& hit(std::size_t i, int index) const {
     if (i < size) return hits_[i * places_ + static_cast<std::size_t>(index)];
     return branch(i).hits[static_cast<std::size_t>(index + 1 - branch(i).first)];
@@ -158,11 +159,11 @@ class LightBatch {
     });
   }
 
-  /// A contribution to the eye that waits for its shadow ray.
+  /// A contribution to the eye, pending its shadow ray.
   struct UnshadowedSplat {
     Rgb value;     ///< divided by the number of samples of t = 1
     float weight;  ///< MIS
-    V2f at;        ///< on the film, in pixels
+    V2f at;        ///< position on the film, in pixels
     std::uint16_t s;
   };
   /// Connects vertex `index` in [0, length(i)) of path `i` to the eye (t = 1) and calls `use(ray,
@@ -178,10 +179,10 @@ class LightBatch {
 
  private:
   struct Branch {
-    std::size_t parent, origin;    ///< the path that was split, and that which walk() started
+    std::size_t parent, origin;    ///< the path that was split; the path that walk() started
     int first, length;             ///< as first() and length()
     std::vector<Vertex> vertices;  ///< from first - 1 on
-    std::vector<Hit> hits;         ///< of each
+    std::vector<Hit> hits;         ///< of each vertex
   };
   const Branch& branch(std::size_t i) const { return branches_[i - size]; }
   std::size_t add_branch(std::size_t parent, int first) {
@@ -195,7 +196,8 @@ class LightBatch {
   Vertex& vertex_to_set(std::size_t i, int index) {
     return vertices_[i * places_ + static_cast<std::size_t>(index)];
   }
-  /// Appends vertex `index` to path `i`, with others before it that are not connectible.
+  /// Appends vertex `index` to path `i`; fills the gap before it with vertices that are not
+  /// connectible.
   Vertex& append(std::size_t i, int index) {
     if (i < size) {
       while (length_[i] <= index) vertex_to_set(i, length_[i]++).bsdf.reset();
@@ -207,7 +209,7 @@ class LightBatch {
     return b.vertices.back();
   }
 
-  /// Traces what paths were split into, at most `size` branches at a time, and their branches.
+  /// Traces the branches of all paths, and the branches of branches, at most `size` at a time.
   void trace_branches(Walk& walk) {
     std::vector<std::pair<std::size_t, PathBranch>> pending;  // with the path that was split
     for (;;) {
@@ -241,14 +243,14 @@ class LightBatch {
     }
   }
 
-  /// What vertex 1 of path `i` stores of next event estimation.
+  /// Sets Vertex::next_event_ratio of vertex 1 of path `i`.
   void set_ratio(std::size_t i) {
     if (length_[i] < 2 || !(setting_.counts.nee > 0)) return;
     Vertex& v = vertex_to_set(i, 1);
     if (v.connectible()) v.next_event_ratio = next_event_.ratio(emitters_[i], v);
   }
 
-  /// Vertex 0; false where there is none.
+  /// Samples vertex 0 of path `i` by `at`; false if the scene has no emitters.
   bool start(std::size_t i, const Rng::FinePoint& at) {
     const EmitterSet& lights = setting_.scene.emitters();
     length_[i] = lights.empty() ? 0 : 1;
@@ -293,7 +295,7 @@ class LightBatch {
   std::vector<Hit> hits_;  // of each vertex
   std::vector<Branch> branches_;
   std::array<std::vector<std::size_t>, size> branches_of_;  // of each path, their indices
-  std::vector<Vertex> traced_;                              // room for branches
+  std::vector<Vertex> traced_;                              // of branches while they are traced
   std::vector<Hit> traced_hits_;                            // of each vertex
   std::vector<PathState> states_;
   std::array<std::size_t, size> path_of_{};  // of each state in states_, its path's index

@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-/// Light paths that one thread traces one after the other: few enough to stop quickly.
+/// Number of light paths that one part of a light pass traces: few enough to stop quickly.
 inline constexpr std::int64_t paths_of_part = 16 * 64;
 
 /// The number of light paths of an iteration: `wanted`, or one for each pixel where that is 0.
@@ -21,10 +21,10 @@ struct LightPathPass {
   Image& image;
 };
 
-/// Traces the light paths of `pass`. If the strategy t = 1 has samples, adds their splats to the
-/// image and hands each to `arrived(splat)`. Calls `keep(path, batch, i)` for each traced path,
-/// index `i` of its batch, from several threads: for the paths of a part, each `paths_of_part`, in
-/// their order.
+/// Traces the light paths of `pass` in parts of `paths_of_part`. If SampleCounts::splat > 0, adds
+/// their splats (t = 1) to the image and calls `arrived(splat)` for each. Calls `keep(path, batch,
+/// i)` for each traced path, which has index `i` in `batch`: in order within a part, from several
+/// threads.
 template <class Keep, class Arrived>
 Counters light_pass(const LightPathPass& pass, const Guide& guide, Keep&& keep, Arrived&& arrived) {
   const IterationContext& context = pass.context;

@@ -12,7 +12,7 @@ namespace lacuna {
 /// with up to `longest` vertices. s counts the vertices from the light; s = 1 is on the emitter.
 class LightVertices {
  public:
-  /// `counts`: the sample counts that the paths' Vertex::mis_partial are made with.
+  /// `counts`: the sample counts with which Vertex::mis_partial of the paths was computed.
   LightVertices(std::size_t paths, int longest, const SampleCounts& counts = {})
       : paths_(paths),
         longest_(longest),

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// A vertex of a light path, as far as merging needs it: the BSDF is the one of the eye vertex.
+/// The data of a light path's vertex that merging needs. Merging uses the BSDF of the eye vertex.
 struct Photon {
   V3f x{0, 0, 0};
   V3f ng{0, 0, 0};  ///< unit; geometric normal of the surface
@@ -43,7 +43,7 @@ inline bool on_one_surface(const V3f& ng, const Photon& p) {
 /// estimates the radiance that the path carries (Georgiev et al. 2012, eq. 7; Noel 2015, 4.5).
 /// The cosine is the photon's, because the probability that a photon arrives falls with it: the
 /// quotient stays bounded where the eye vertex lies on another triangle. Black at grazing
-/// incidence, where rounding would decide.
+/// incidence, where the cosine is a rounding error.
 inline Rgb merged(const SurfaceEndpoint& eye, const Photon& p) {
   const float cosine = abs_dot(p.ng, p.wp);
   if (!(cosine > cos_rounding)) return Rgb(0, 0, 0);
@@ -51,8 +51,8 @@ inline Rgb merged(const SurfaceEndpoint& eye, const Photon& p) {
 }
 
 /// The MIS weight of merging the eye vertex with the photon (mis.h). Both sums are relative to the
-/// density of merging, p_{j+1} g_j pi r^2 = p_j p_j(x_j) pi r^2; the vertex is taken to be one
-/// point.
+/// density of merging, p_{j+1} g_j pi r^2 = p_j p_j(x_j) pi r^2. They treat the eye vertex and the
+/// photon as one point.
 inline double merge_weight(const SurfaceEndpoint& eye, const Photon& p, const SampleCounts& n) {
   const double light_rev = p.mis_partial > 0 ? eye.pdf(p.wp) : 0.0;
   const double light =

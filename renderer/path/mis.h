@@ -4,7 +4,7 @@ namespace lacuna {
 
 // Multiple importance sampling over all ways (s, t) to make one path x_0 ... x_k, x_0 on the
 // emitter and x_k at the eye: its first s vertices walked from the light, the other t = k + 1 - s
-// from the eye, and x_{s-1}, x_s joined. Balance heuristic with the number of samples of each
+// from the eye, and x_{s-1}, x_s connected. Balance heuristic with the number of samples of each
 // strategy (Veach 1997, 9.2.2; Noel 2015, 4.3, 11.5). p_i / p_s is a product of ratios of the two
 // densities of each vertex between, so the sum over i < s follows from what a walk from the light
 // carries along, and the sum over i > s from what a walk from the eye does (van Antwerpen 2011):
@@ -12,14 +12,14 @@ namespace lacuna {
 //   sum_{i <= j} n_i p_i / p_{j+1} = (g_j / p_j) (n_j c_j + sum_{i < j} n_i p_i / p_j)
 //
 // with p_j the density of vertex j on its walk, g_j the one from the other end, and c_j whether
-// x_{j-1} and x_j can be joined: neither scatters through a delta lobe only.
+// x_{j-1} and x_j can be connected: neither scatters through a delta lobe only.
 //
 // With a light tree, next event estimation samples x_0 with another density than light paths do.
 // p_1 is then r times the product of densities on the walks, with r the ratio of the two, a
-// function of x_0 and x_1: n_1 r takes the place of n_1 wherever the recursion meets it.
+// function of x_0 and x_1: n_1 r takes the place of n_1 in the recursion.
 //
 // Vertex merging (Georgiev et al. 2012; Hachisuka et al. 2012) is one more technique for each
-// vertex x_j, 0 < j < k: both walks sample it, and it counts where the two points lie within a
+// vertex x_j, 0 < j < k: both walks sample it, and it contributes if the two points lie within a
 // radius r. Its density is p_{j+1} times the probability g_j pi r^2 that the walk from the other
 // end comes so close. With m the number of light paths times pi r^2 and d_j whether x_j can be
 // merged (it does not scatter through a delta lobe only), the sum has one more term for each
@@ -32,9 +32,9 @@ struct SampleCounts {
   double hit = 1;      ///< s = 0: the eye path hits an emitter
   double nee = 0;      ///< s = 1, t >= 2: next event estimation
   double connect = 0;  ///< s >= 2, t >= 2
-  double splat = 0;    ///< s >= 1, t = 1: a light path joined to the eye
-  /// Merging: light paths whose vertices an eye vertex may be merged with, times pi r^2; scene
-  /// units^2.
+  double splat = 0;    ///< s >= 1, t = 1: a light path is connected to the eye
+  /// Merging: the number of light paths whose vertices may be merged with an eye vertex, times
+  /// pi r^2; in scene units^2.
   double merge = 0;
 
   /// Whether paths from lights are longer than one vertex.
@@ -51,8 +51,8 @@ struct TechniqueCounts {
   double none = 0, one = 0, more = 0;
   double merge = 0;  ///< SampleCounts::merge
   constexpr bool any() const { return none > 0 || one > 0 || more > 0 || merge > 0; }
-  /// The same with `ratio` times as many samples of the strategies with one vertex: the density of
-  /// a point on an emitter differs by it between next event estimation and light paths.
+  /// The same with `ratio` times as many samples of the strategies with one vertex; with r of
+  /// above, n_1 r for n_1.
   constexpr TechniqueCounts with_one(double ratio) const {
     return {none, one * ratio, more, merge};
   }
@@ -77,7 +77,7 @@ constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connec
 }
 
 /// m p_j d_j at vertex `j` of a walk with density `p_fwd` per area there: the technique that merges
-/// this vertex, relative to the strategy that joins it.
+/// this vertex, relative to the strategy that connects it.
 constexpr double merge_partial(const TechniqueCounts& side, int j, bool mergeable, double p_fwd) {
   return side.merge > 0 && j > 0 && mergeable ? side.merge * p_fwd : 0.0;
 }
@@ -90,9 +90,9 @@ constexpr double mis_weight(double own, double light, double eye) {
 }
 
 /// The power heuristic with exponent 2 (Veach 1997, 9.2.4) where two techniques make a path:
-/// `balance` is the one's weight by the balance heuristic, in [0, 1]; the other's is 1 - balance. A
-/// technique that is seldom the better one then adds next to nothing of its noise. With the many
-/// techniques of bidirectional paths it measured worse than the balance heuristic.
+/// `balance` is the weight of one by the balance heuristic, in [0, 1]; the other's is 1 - balance.
+/// Compared with the balance heuristic, the technique with the smaller weight adds less noise. With
+/// the many techniques of bidirectional paths the balance heuristic measured better.
 constexpr double power_of_two(double balance) {
   const double other = 1 - balance;
   return balance * balance / (balance * balance + other * other);

@@ -8,34 +8,35 @@
 
 namespace lacuna {
 
-/// A surface vertex as a light tree sees it. It is the same for the eye path and for the light path
-/// of one whole path: an opaque surface scatters only from one side of ng to the same side.
+/// The light tree's receiver for a surface vertex. The eye path and the light path of one whole
+/// path give the same: an opaque surface scatters only to the side from which light arrives.
 [[gnu::always_inline]] inline Receiver receiver_at(const Vertex& v) {
-  // Along ng the cosine with an interpolated normal may be large.
+  // At grazing angles to ng, the cosine with an interpolated normal may be large.
   constexpr float flat = 0x1p-10F, curved = 0.125F;
   return {v.surface.x, v.side(), v.bsdf->transmits(), v.surface.ns == v.surface.ng ? flat : curved};
 }
 
-/// Selection of the emitter for next event estimation (s = 1).
+/// Samples points on emitters for next event estimation (s = 1).
 class NextEvent {
  public:
-  /// By the light tree where `choice` says so and the scene has it (SceneNeeds::light_tree).
+  /// Selects emitters by the light tree, if `choice` asks for it and the scene has one
+  /// (SceneNeeds::light_tree); else by power.
   NextEvent(const Scene& scene, EmitterChoice choice)
       : emitters_(scene.emitters()), pointwise_(by_tree(emitters_, choice)) {}
 
-  /// Whether the emitter is selected for each vertex anew.
+  /// Whether the selection depends on the vertex (light tree).
   bool for_each_vertex() const { return pointwise_ != nullptr; }
-  /// An emitter that was selected before its point is sampled.
+  /// An emitter that was selected before the point on it is sampled; `none` if it was not.
   struct Preselected {
     EmitterSet::Selected selected{.entry = none};
     float ratio = 1;  ///< EmitterPoint::next_event_ratio
   };
-  /// Selects before the vertex is known, where its selection does not depend on it: called before
-  /// the ray to it is traced. Requires emitters.
+  /// Selects an emitter before the ray to the vertex is traced, if the selection does not depend on
+  /// the vertex; else none. Requires emitters.
   Preselected preselect(Rng& rng) const {
     return pointwise_ == nullptr ? Preselected{emitters_.choose(rng)} : Preselected{};
   }
-  /// Member by member: a copy of the whole would wait for its parts to be written.
+  /// Copies member by member: to load the whole of what was just stored in parts would stall.
   static void set(Preselected& preselected, const PointwiseSelection::Choice& c) {
     preselected.selected.entry = c.entry;
     preselected.selected.at.x = c.at.x;
@@ -48,8 +49,8 @@ class NextEvent {
     pointwise_->choose(requests);
     for (const PointwiseSelection::Request& r : requests) emitters_.prefetch(r.result.entry);
   }
-  /// Samples a point on an emitter for the connectible vertex `v`, on the emitter `preselected` if
-  /// one is selected already.
+  /// Samples a point on an emitter for the connectible vertex `v`: on `preselected`, unless that is
+  /// none.
   EmitterPoint sample(const Vertex& v, Preselected preselected, Rng& rng) const {
     if (preselected.selected.entry == none) {
       const Rng::FinePoint at = rng.next_fine_point();
@@ -59,14 +60,14 @@ class NextEvent {
     e.next_event_ratio = preselected.ratio;
     return e;
   }
-  /// EmitterPoint::next_event_ratio of the point `e`, sampled in another way, for the connectible
-  /// surface vertex `v`.
+  /// EmitterPoint::next_event_ratio of the point `e`, which another technique sampled, for the
+  /// connectible surface vertex `v`.
   float ratio(const EmitterPoint& e, const Vertex& v) const {
     if (pointwise_ == nullptr || !e.pdf.positive()) return 1;
     return pointwise_->ratio(e.entry, receiver_at(v));
   }
-  /// Sets it for the point `e` that an eye path hit at `v`, `depth` edges from the eye, where the
-  /// path's weight depends on it; `before` is the vertex before `v`.
+  /// Sets next_event_ratio of the point `e` that an eye path hit at `v`, `depth` edges from the
+  /// eye, if the path's MIS weight depends on it. `before` is the vertex before `v`.
   void set_ratio(EmitterPoint& e, const Vertex& v, const Vertex& before, int depth) const {
     if (depth > 1 && v.prev_connectible) e.next_event_ratio = ratio(e, before);
   }

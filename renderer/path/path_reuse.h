@@ -11,33 +11,33 @@
 
 namespace lacuna {
 
-/// Path reuse (Bekaert, Sbert and Halton 2002): pixels of a group share the light that their paths
-/// gather behind vertex 2. Vertex 2 of each is joined to vertex 1 of every other by a shadow ray. A
-/// path from vertex 1 of pixel i over vertex 2 of pixel j could have been sampled by each pixel k
-/// whose vertex 1 sees that vertex 2, so the balance heuristic weighs it by
+/// Path reuse (Bekaert, Sbert and Halton 2002): pixels of a group share the light that arrives at
+/// vertex 2 of their paths. Vertex 2 of each path is connected to vertex 1 of every other by a
+/// shadow ray. A path from vertex 1 of pixel i over vertex 2 of pixel j could have been sampled by
+/// each pixel k whose vertex 1 sees that vertex 2, so its weight by the balance heuristic is
 ///
 ///     P_jj F_jj / sum_k V_kj P_kj F_kj.
 ///
 /// P_kj is the density per area of vertex 2 of j on the walk of k, V_kj the visibility, and F_kj
-/// the luminance of what vertex 2 scatters from the light to vertex 1 of k: where vertex 2 is not
-/// Lambertian, a pixel takes little from those that saw another part of its lobes. The estimate is
-/// unbiased. Emission at vertex 2 and next event estimation at vertex 1 stay the pixel's own.
+/// the luminance of what vertex 2 scatters from the light to vertex 1 of k: a glossy vertex 2 gives
+/// little weight to pixels that see another part of its lobes. The estimate is unbiased. Emission
+/// at vertex 2 and next event estimation at vertex 1 are not shared.
 ///
-/// Requires paths that are not ended before vertex 2. None of a batch is split before vertex 3:
-/// vertices 1 and 2 of those that share must stay until their branches have ended.
+/// Requires that roulette ends no path before vertex 2 and that no path is split before vertex 3:
+/// vertices 1 and 2 must stay unchanged until all branches of the batch have ended.
 class PathReuse {
  public:
-  /// Groups of `pixels` of a block, at most EyeBatch::size; 1: no reuse. What `batch` and `guide`
-  /// refer to outlives this.
+  /// `pixels`: of a group, at most EyeBatch::size; 1: no reuse. `batch` and `guide` must outlive
+  /// this.
   PathReuse(EyeBatch& batch, const Guide& guide, int pixels)
       : batch_(batch), guide_(guide), pixels_(static_cast<std::size_t>(pixels)) {}
 
-  /// Without it the other functions do nothing.
+  /// Whether pixels share light at all. If not, no path shares().
   bool active() const { return pixels_ > 1; }
 
-  /// Call when the batch's paths have started, not when branches resume. `rng` chooses the groups:
-  /// at random, so that neighbouring pixels seldom share their noise, and the same in all
-  /// iterations, so that a pixel's low-discrepancy sequence sees one integrand.
+  /// Call when the batch's paths have started, not when branches resume. `rng` selects the groups:
+  /// at random, so that neighbouring pixels seldom have correlated noise, and the same in all
+  /// iterations, so that a pixel's low-discrepancy sequence integrates one function.
   void begin(Rng rng) {
     if (!active()) return;
     shares_.fill(false);
@@ -49,21 +49,21 @@ class PathReuse {
     }
   }
 
-  /// Call when path `i` has reached vertex `depth`, before next event estimation there. At vertex
-  /// 2, if the path shares what it gathers from there on, its throughput begins anew at 1.
+  /// Call when path `i` has reached vertex `depth`, before next event estimation there. Decides at
+  /// vertex 2 whether the path shares(), and then resets its throughput to 1.
   void reach(std::size_t i, int depth) {
     if (!active()) return;
     if (depth == 2) begin_sharing(i);
     if (depth == 3) to_next_[i] = -batch_.vertex(i, 3).wp;
   }
-  /// Whether what path `i` gathers behind vertex 2, and by next event estimation there, goes to
-  /// add() instead of its pixel.
+  /// Whether contributions of path `i` by next event estimation at vertex 2, and at later vertices,
+  /// go to add() instead of its pixel.
   bool shares(std::size_t i) const { return shares_[batch_.origin[i]]; }
-  /// What path `i` would give its pixel of a unit that goes to add(), if it did not share.
+  /// The throughput of path `i` up to vertex 2, which values of add() lack; 1 if it does not share.
   Rgb own(std::size_t i) const { return shares(i) ? carried_[batch_.origin[i]] : Rgb(1, 1, 1); }
-  /// Next event estimation at vertex 2 of path `i` looks in unit direction `w`.
+  /// Sets the unit direction `w` of next event estimation at vertex 2 of path `i`.
   void set_next_event_direction(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
-  /// What path `i` gathers: by next event estimation at vertex 2, or at vertices behind it.
+  /// Adds a contribution of path `i`: of next event estimation at vertex 2, or of a later vertex.
   void add(std::size_t i, int depth, const Rgb& value) {
     if (is_finite(value)) {
       (depth == 2 ? near_ : far_)[batch_.origin[i]] += value;
@@ -72,9 +72,8 @@ class PathReuse {
     }
   }
 
-  /// Gives the vertices of paths that have ended the throughput that they would have if nothing
-  /// were shared, for what learns from them. Nothing reads it before the vertex where a branch
-  /// began.
+  /// Multiplies the throughput of the vertices of finished paths by own(), for training samples.
+  /// Also changes it before the vertex at which a branch began, where it is not read any more.
   void restore_throughput() {
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
       if (!shares(i)) continue;
@@ -82,8 +81,8 @@ class PathReuse {
     }
   }
 
-  /// Calls `add(pixel, value)` with what is shared. Requires that the paths and their branches have
-  /// ended and all their shadow rays are traced.
+  /// Calls `add(pixel, value)` with the shared light. Requires that the paths and their branches
+  /// have ended and all their shadow rays are traced.
   template <class Add>
   void finish(const RayCaster& caster, Counters& counters, Add&& add) {
     if (!active()) return;
@@ -104,16 +103,18 @@ class PathReuse {
   }
 
  private:
-  /// What vertex 2 scatters to a vertex 1 of light from the emitter and of light from vertex 3.
+  /// f |cos| of vertex 2 towards a vertex 1: for light from the point of next event estimation
+  /// (near) and for light from vertex 3 (far).
   struct Scattered {
     Rgb near{0, 0, 0}, far{0, 0, 0};
   };
-  /// The edge between vertex 1 of a path and vertex 2 of the source.
+  /// The edge between vertex 1 of a path k and vertex 2 of path j.
   struct Edge {
     std::uint32_t pixel = 0;
     bool visible = true;
-    double density = 0;    ///< P_kj
-    Rgb carried{0, 0, 0};  ///< what radiance 1 of vertex 2 gives to the pixel: f |cos| |cos| / d^2
+    double density = 0;  ///< P_kj
+    /// Contribution to the pixel of radiance 1 from vertex 2: throughput f |cos| |cos| / d^2.
+    Rgb carried{0, 0, 0};
     Scattered scattered = {};
   };
 
@@ -124,7 +125,7 @@ class PathReuse {
     PathState& state = batch_.states[i];
     carried_[i] = v.throughput;
     state.throughput = v.throughput = Rgb(1, 1, 1);
-    // Roulette and splitting go on by the whole path.
+    // Roulette and splitting still use the throughput of the whole path.
     state.roulette.carried_before = max_component(carried_[i]);
     shares_[i] = true;
     near_[i] = far_[i] = Rgb(0, 0, 0);
@@ -133,7 +134,8 @@ class PathReuse {
     return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
   }
 
-  /// The edges from vertex 2 of path `j` to vertex 1 of all paths of its group, first its own.
+  /// Sets edges_ to those from vertex 2 of path `j` to vertex 1 of all paths of its group, its own
+  /// first, and rays_ to the shadow rays of the others.
   void connect_to_group(std::size_t j, std::span<const std::uint8_t> group) {
     const Vertex& v = batch_.vertex(j, 2);
     // The walk's throughput is f |cos| / p.
@@ -150,7 +152,7 @@ class PathReuse {
       if (!(c.distance2 > 0)) continue;
       Pdf<SolidAngle> bsdf;
       const Rgb value = from.scatter(c.w, bsdf);
-      // Where nothing is scattered, the density may be left out of `bsdf`.
+      // If nothing is scattered, scatter() may leave `bsdf` at 0.
       const double density = is_black(value) ? from.pdf(c.w) : from.pdf(c.w, bsdf);
       if (!(density > 0)) continue;
       Edge e{.pixel = pixel_of_[k]};
@@ -164,7 +166,7 @@ class PathReuse {
       e.density = density * area;
       e.carried = value * static_cast<float>(area);
       edges_.push_back(e);
-      // From vertex 2: rays of one origin to neighbouring points.
+      // From vertex 2: the rays have one origin, which makes them coherent.
       const V3f origin = to.origin(-c.w);
       rays_.push_back({origin, from.end(c.w, c.distance) - origin, 1.0F});
     }
@@ -195,14 +197,14 @@ class PathReuse {
       sum_near += e.density * double(luminance(e.scattered.near));
       sum_far += e.density * double(luminance(e.scattered.far));
     }
-    // What the path gathered, without what vertex 2 scattered to its own pixel.
+    // The gathered light without the factor f |cos| of vertex 2 towards the path's own pixel.
     const Scattered& own = edges_[0].scattered;
     const Rgb near = over(near_[j], own.near, sum_near), far = over(far_[j], own.far, sum_far);
     for (const Edge& e : edges_) {
       if (e.visible) add(e.pixel, e.carried * (e.scattered.near * near + e.scattered.far * far));
     }
   }
-  /// gathered luminance(scattered) / (scattered sum)
+  /// gathered / scattered, times luminance(scattered) / sum. `sum`: of P_kj F_kj, visible edges.
   static Rgb over(const Rgb& gathered, const Rgb& scattered, double sum) {
     if (!(sum > 0)) return Rgb(0, 0, 0);
     const double share = double(luminance(scattered)) / sum;
@@ -219,12 +221,12 @@ class PathReuse {
   std::size_t paths_ = 0;
   std::uint64_t rejected_ = 0;  // values that were not finite
   std::array<std::uint32_t, EyeBatch::size> pixel_of_{};
-  std::array<std::uint8_t, EyeBatch::size> order_{};  // paths: each `pixels_` are a group
+  std::array<std::uint8_t, EyeBatch::size> order_{};  // of paths: `pixels_` in a row are a group
   std::array<bool, EyeBatch::size> shares_{};
   std::array<Rgb, EyeBatch::size> carried_{};  // throughput up to vertex 2
   std::array<Rgb, EyeBatch::size> near_{}, far_{};
   std::array<V3f, EyeBatch::size> to_emitter_{}, to_next_{};  // unit, from vertex 2
-  std::vector<Edge> edges_;                                   // of the source
+  std::vector<Edge> edges_;                                   // of one vertex 2
   std::vector<Ray> rays_;                                     // of edges_ but the first
   std::vector<std::uint8_t> occluded_;
 };

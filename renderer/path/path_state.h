@@ -8,22 +8,22 @@
 
 namespace lacuna {
 
-/// What Russian roulette and splitting keep of a path.
+/// The state of a path that Russian roulette and splitting need.
 struct RouletteState {
-  /// BsdfSample::pdf_ratio of all vertices: throughput times this scale is the throughput that
-  /// sampling the BSDF would have left. A guide lowers throughput where it sends many paths, so
-  /// roulette by throughput alone would end just those.
+  /// Product of BsdfSample::pdf_ratio over the vertices: throughput times `scale` is what sampling
+  /// the BSDF would have given. A guide lowers the throughput of directions that it samples often,
+  /// so roulette by the throughput alone would end just these paths.
   float scale = 1;
-  /// The path's throughput times this is what roulette goes by. Of an eye path: the largest
-  /// component of what PathReuse keeps apart from the throughput; of a light path: 1 / that of the
-  /// first edge.
+  /// Roulette uses throughput times this. Eye paths: the largest component of the factor that
+  /// PathReuse has moved out of the throughput, or 1. Light paths: 1 over the largest component of
+  /// the throughput of the first edge, which has the unit of power.
   float carried_before = 1;
-  int reference = 0;  ///< depth of the first vertex whose BSDF has a density; 0: none yet
-  /// Expected luminance that the path adds behind that vertex; below 0: not computed yet.
+  int reference = 0;  ///< depth of the first connectible vertex; 0: none yet
+  /// Expected luminance of the contributions after that vertex; below 0: not computed yet.
   float expected = -1;
   float least = 0;  ///< luminance of throughput below which the path is not split
   float split = 1;  ///< number of equal parts it was split into since it started or branched off
-  /// The window has replaced roulette by throughput at the last vertex.
+  /// The window decided at the last vertex: goes_on() does not.
   bool windowed = false;
 };
 
@@ -34,8 +34,8 @@ struct PathState {
   Rgb throughput{1, 1, 1};  ///< along `ray`
   Pdf<SolidAngle> p;        ///< density with which the direction of `ray` was sampled
   std::span<Vertex> path;   ///< room for max_depth + 1 vertices; path[0] is set
-  /// mis_partial_sum() of the last vertex over its density. At vertex 0 of a light path whose
-  /// emitter can be hit: TechniqueCounts::none over its density.
+  /// mis_partial_sum() plus merge_partial() of the last vertex, over its density. At vertex 0 of a
+  /// light path whose emitter can be hit: TechniqueCounts::none over its density.
   double mis_partial = 0;
   int depth = 0;  ///< edges traced: path[depth] is the last vertex
   RouletteState roulette = {};

@@ -9,8 +9,8 @@ namespace lacuna {
 
 namespace {
 
-/// Of one photon, at most: in its part with its hit, sorted, its place, and in the grid with all
-/// that sorts it.
+/// Bytes of memory per photon, at most: in its part with its hit, in the sorted array, its index
+/// there, and in the grid with the memory for sorting.
 constexpr double bytes_of_photon = 2.0 * sizeof(Photon) + sizeof(Hit) + sizeof(V3f) + 44;
 
 void require_photons(double photons, double stored) {
@@ -22,8 +22,8 @@ void require_photons(double photons, double stored) {
   });
 }
 
-/// Side of a pixel at the median distance of what the camera sees; with nothing in view, at the
-/// scene's radius.
+/// Side of a pixel's footprint, scene units, at the median distance of the visible surfaces; at the
+/// scene's radius if none is visible.
 double footprint(const Scene& scene, const Camera& camera) {
   constexpr int steps = 16;  // of rays across the film
   std::vector<double> sides;

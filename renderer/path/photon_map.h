@@ -15,11 +15,11 @@
 
 namespace lacuna {
 
-/// The radius within which photons count in iteration `context.iteration`, scene units, > 0
+/// The radius of merging or density estimation in iteration `context.iteration`, scene units, > 0
 /// (RadiusSettings).
 double merge_radius(const RadiusSettings& settings, const IterationContext& context);
 
-/// CPU seconds of all threads in the parts of the iterations of a method with photons.
+/// CPU seconds of all threads, by part of an iteration of a method with photons.
 struct PhotonSeconds {
   double light = 0, grid = 0, eye = 0;
   double look_up = 0;  ///< a part of `eye`
@@ -28,17 +28,17 @@ struct PhotonSeconds {
   void append_to(std::vector<std::pair<std::string, double>>& statistics) const;
 };
 
-/// The photons of an iteration. A member of an integrator keeps its memory between iterations.
+/// The photons of an iteration. Keep it as a member of the integrator: it reuses its memory.
 class PhotonMap {
  public:
-  /// Before the light pass: room for the photons of `paths` light paths. Throws MemoryLimitError
-  /// where one photon a path is too much.
+  /// Call before the light pass, which traces `paths` light paths. Throws MemoryLimitError if there
+  /// is no memory for one photon per path.
   void begin(std::int64_t paths);
-  /// Stores vertex `v`, number `index` >= 1 of light path number `path`, if it can be merged. To be
-  /// called for the paths of one part of a light pass in their order. Throws MemoryLimitError where
-  /// the photons so far let expect too many.
+  /// Stores vertex `v`, number `index` >= 1 of light path number `path`, if it can be merged. Call
+  /// it for the paths of one part of a light pass in their order. Throws MemoryLimitError if there
+  /// is no memory for the number of photons that the parts so far predict.
   void keep(std::size_t path, const Vertex& v, int index, bool caustic = false);
-  /// Stores the photons of path `i` of `batch`, as keep(), and what restores its vertices.
+  /// keep() for all vertices of path `i` of `batch`, with the hits from which they are restored.
   void keep_path(std::size_t path, const LightBatch& batch, std::size_t i) {
     Part& part = parts_[path / std::size_t{paths_of_part}];
     batch.for_each_vertex(i, [&](std::size_t j, int s) {
@@ -48,7 +48,7 @@ class PhotonMap {
     });
     part.ends.push_back(static_cast<std::uint32_t>(part.photons.size()));
   }
-  /// Makes path `i` of `batch` the path that keep_path() stored, without vertex 0.
+  /// Restores the path that keep_path() stored as path `i` of `batch`, without vertex 0.
   void restore_path(std::size_t path, LightBatch& batch, std::size_t i) const {
     const Part& part = parts_[path / std::size_t{paths_of_part}];
     const std::size_t k = path % std::size_t{paths_of_part};
@@ -56,9 +56,9 @@ class PhotonMap {
     batch.restore(i, std::span(part.photons).subspan(begin, n),
                   std::span(part.hits).subspan(begin, n));
   }
-  /// After the light pass, for for_each_at().
+  /// Call after the light pass: builds the grid of for_each_at().
   void arrange(double radius, const ThreadPool& pool);
-  /// After the light pass, for for_each_nearest().
+  /// Call after the light pass: builds the tree of for_each_nearest().
   void arrange_nearest(double radius, const ThreadPool& pool);
 
   std::size_t size() const { return photons_.size(); }
@@ -76,11 +76,11 @@ class PhotonMap {
                           });
   }
 
-  /// Calls `visit(photon, d2)` for the photons nearest to eye vertex `v` that lie on one surface
-  /// with it: of the found.size() - 1 nearest within the radius. They lie in the disc up to the
-  /// next one, whose squared radius is returned: k / (pi r_{k+1}^2) has the density's mean where
-  /// that is uniform. The disc of fewer has the map's radius. `d2`: squared distance, in units of
-  /// the disc's radius.
+  /// Calls `visit(photon, d2)` for those of the k = found.size() - 1 photons nearest to eye vertex
+  /// `v`, within the radius, that lie on one surface with it. Returns the squared radius of the
+  /// disc for the density estimate: the squared distance to photon k + 1, since k / (pi r_{k+1}^2)
+  /// is an unbiased estimate of a uniform density; with at most k photons within the radius, that
+  /// of the map. `d2`: squared distance, in units of the disc's radius. `found`: working memory.
   template <class Visit>
   double for_each_nearest(const Vertex& v, std::span<PointTree::Found> found, Visit&& visit) const {
     const auto radius = static_cast<float>(radius_);
@@ -98,11 +98,11 @@ class PhotonMap {
   }
 
  private:
-  /// Of a light pass.
+  /// The photons of one part of a light pass.
   struct Part {
     std::vector<Photon> photons;
-    std::vector<Hit> hits;            ///< of keep_path(): of each photon
-    std::vector<std::uint32_t> ends;  ///< of keep_path(): of each path, the end of its photons
+    std::vector<Hit> hits;            ///< of each photon, if keep_path() stored it
+    std::vector<std::uint32_t> ends;  ///< end of the photons of each path that keep_path() stored
   };
 
   void check_room() const;

@@ -14,32 +14,32 @@
 
 namespace lacuna {
 
-/// A hash grid of points, for all points within a fixed radius of a place. Cells are twice the
-/// radius wide, so that a ball touches two along each axis. The points are sorted by the hash of
-/// their cell; cells that are neighbours along x are neighbours in memory, so that a query reads
-/// four runs of points, eight at a time.
+/// A hash grid of points, which finds all points within a radius of a position. Cells are twice the
+/// radius wide, so a ball touches at most two along each axis. The points are sorted by the hash of
+/// their cell. Neighbouring cells along x are neighbours in memory, so a query reads four runs of
+/// points, eight points at a time.
 ///
-/// Time and memory of build() are linear in the points, whatever the radius. The order of the
-/// points, and with it that of a query's answers, does not depend on the number of threads.
+/// Time and memory of build() are linear in the number of points, for any radius. The order of the
+/// points, and so of the results of a query, does not depend on the number of threads.
 class PointGrid {
  public:
-  /// A query looks at no more points than about this: of more, at a random part. So the time of
-  /// many queries stays linear where the radius is as large as the scene or all points are at one
-  /// place.
+  /// The number of candidates above which a query visits a random subset, of about this size. So
+  /// the time of many queries stays linear even if the radius is as large as the scene or if all
+  /// points coincide.
   static constexpr std::uint32_t most_candidates = 1 << 12;
 
-  /// `radius`: of queries, > 0 and at least 2^-20 times the coordinates, below which floats have no
-  /// neighbours. At most 2^32 - 1 points.
+  /// `radius`: the largest of a query; > 0, and at least 2^-20 times the largest coordinate,
+  /// because of the precision of floats. At most 2^32 - 1 points.
   void build(std::span<const V3f> points, double radius, const ThreadPool& pool);
 
   std::size_t size() const { return order_.size(); }
-  /// The index of the point that has place `k` in the sorted order.
+  /// order()[k]: the index of the point that is at `k` in the sorted order.
   std::span<const std::uint32_t> order() const { return {order_.begin(), order_.end()}; }
 
-  /// Calls `visit(k, distance2, count)` for the places k of the points within `radius` of `x`,
-  /// where `radius` is at most that of build(). `count` is 1, or where candidates are too many the
-  /// step at which they are visited from a start that `rng` draws: a sum over the points visited,
-  /// each times its count, has the mean of the sum over all.
+  /// Calls `visit(k, distance2, count)` for the points within `radius` of `x`, with k as in
+  /// order(); `radius` is at most that of build(). `count` is 1. Of more than most_candidates
+  /// candidates, only every count-th is visited, from a random start: a sum over the visited
+  /// points, each times `count`, is an unbiased estimate of the sum over all.
   template <class Visit>
   void for_each_within(const V3f& x, float radius, Rng& rng, Visit&& visit) const {
     if (order_.empty()) return;
@@ -66,12 +66,12 @@ class PointGrid {
   }
 
  private:
-  /// Two cells along x: [begin, end) holds their points, and others of the same hash.
+  /// Two neighbouring cells along x: [begin, end) are their points, and others of the same hash.
   struct Row {
     int y, z;
     std::uint32_t begin, end;
   };
-  /// Four, or more where one goes on at the first bucket.
+  /// Four rows; one that continues at the first bucket counts as two.
   using Query = std::array<Row, 8>;
   int cell(float x) const { return static_cast<int>(std::floor(double(x) * per_cell_)); }
   static std::uint64_t hash(int y, int z) {
@@ -87,7 +87,7 @@ class PointGrid {
   std::uint32_t bucket(const V3f& p) const { return bucket(cell(p.x), cell(p.y), cell(p.z)); }
 
   std::span<const Row> rows_around(const V3f& x, Query& rows) const {
-    // The lower of two cells: the one that the ball's lower end lies in.
+    // The lower of the two cells contains the lower end of the ball.
     const auto lower = [&](float at) {
       return static_cast<int>(std::floor((double(at) - reach_) * per_cell_));
     };
@@ -106,7 +106,8 @@ class PointGrid {
     return std::span(rows).first(n);
   }
 
-  /// Points of other cells share a hash: one counts for its own row, and so once.
+  /// Whether point `k` is in a cell of the row: cells with the same hash share a bucket, and a
+  /// point must count in one row only.
   bool in_row(const Row& row, std::size_t k) const {
     return cell(y_[k]) == row.y && cell(z_[k]) == row.z;
   }
@@ -143,7 +144,7 @@ class PointGrid {
   double reach_ = 1;     ///< half a cell
   std::uint32_t mask_ = 0;
   KeySort<std::uint32_t> sort_;            // of the points' indices by bucket
-  std::span<const std::uint32_t> starts_;  // of each bucket, its first place
+  std::span<const std::uint32_t> starts_;  // first k of each bucket
   HugeArray<float> x_, y_, z_;             // in sorted order, padded to whole loads
   HugeArray<std::uint32_t> order_;
 };

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// A k-d tree of points, for the nearest of them (nanoflann).
+/// A k-d tree of points, which finds the nearest ones (nanoflann).
 class PointTree {
  public:
   PointTree();
@@ -25,8 +25,8 @@ class PointTree {
     std::uint32_t index;
     bool operator<(const Found& o) const { return distance2 < o.distance2; }
   };
-  /// Writes the points nearest to `x` into `found`, those closer than the root of `radius2`, at
-  /// most found.size() >= 1, the farthest first and the others in any order. Returns how many.
+  /// Writes the points nearest to `x` to `found`: at most found.size() >= 1, all closer than
+  /// sqrt(radius2), the farthest first and the others in any order. Returns their number.
   std::size_t nearest(const V3f& x, float radius2, std::span<Found> found) const;
 
  private:

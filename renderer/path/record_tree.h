@@ -17,7 +17,7 @@ struct SurfacePoint {
 /// Point `v`, which an eye path hit, with the geometric normal on the side of the ray.
 inline SurfacePoint surface_point(const Vertex& v) { return {v.surface.x, v.side()}; }
 
-/// A k-d tree of surface points, for the nearest neighbours of a point by distance and normal.
+/// A k-d tree of surface points, which finds the nearest by distance and normal.
 class RecordTree {
  public:
   void build(std::vector<SurfacePoint> points);

@@ -8,11 +8,12 @@
 
 namespace lacuna {
 
-/// Decides how often a path goes on. A path that follows the BSDF ends by its throughput, from
+/// Russian roulette and splitting. Without a guide, roulette by the throughput ends paths, from
 /// `depth` edges on. A guided path is kept within a window: adjoint-driven Russian roulette and
 /// splitting (Vorba and Krivanek 2016) keeps the luminance that it is expected to add to the
-/// picture near what that was at its first vertex. Guiding weights multiply by a factor at each
-/// vertex; without a window their variance grows exponentially with the depth.
+/// picture near the value at its first connectible vertex. Guiding multiplies the weight by a
+/// factor at each vertex; without a window the variance of the product grows exponentially with the
+/// depth.
 class Roulette {
  public:
   struct Limits {
@@ -37,7 +38,7 @@ class Roulette {
       state.least = carried * least_part;
       return 1;
     }
-    // What the guide has added to the weight.
+    // The factor by which guiding has changed the weight.
     const float guiding_weight = 1 / state.scale;
     if (guiding_weight <= high && w.depth < limits_.depth) return 1;
     if (state.expected < 0) {
@@ -50,15 +51,15 @@ class Roulette {
     if (ratio < low && w.depth >= limits_.depth) {
       return survive(w, std::max(ratio / low, min_survival)) ? 1 : 0;
     }
-    // Splitting undoes what the guide has added to the weight, and no more: to split all paths that
-    // come into the light costs more time than it saves noise.
+    // Splitting undoes at most the factor of guiding: splitting all paths that reach bright regions
+    // costs more time than the lower variance saves.
     const float excess = std::min({ratio, guiding_weight, float{max_parts}});
     const bool splits = excess > high && carried > state.least && w.depth >= limits_.split_depth;
     return splits ? static_cast<int>(std::lround(excess)) : 1;
   }
 
-  /// Roulette by throughput, after the next direction is sampled, where the window has not decided.
-  /// False: the path ends.
+  /// Roulette by the throughput, after the next direction is sampled, unless parts() has decided by
+  /// the window. False: the path ends.
   bool goes_on(PathState& w) const {
     if (w.depth < limits_.depth || w.roulette.windowed) return true;
     const float survival =
@@ -72,8 +73,8 @@ class Roulette {
   static constexpr float low = 1.0F / 3, high = 5.0F / 3;  // 2 / (1 + s) and 2 s / (1 + s), s = 5
   static constexpr float min_survival = 0.1F;
   static constexpr int max_parts = 16;
-  // The throughputs of all parts of a path sum to at most its own, on average. A least part
-  // therefore bounds their number, and the time that wrong expectations cost.
+  // On average, the throughputs of all parts of a path sum to at most its own. The smallest part
+  // that may be split therefore bounds their number, and the time that wrong estimates cost.
   static constexpr float least_part = 1.0F / 64;
 
   static bool survive(PathState& w, float survival) {
@@ -83,8 +84,8 @@ class Roulette {
     return true;
   }
 
-  /// The luminance that a path of throughput 1 adds behind `v`; where that is unknown, as it is of
-  /// all light paths, as if it were equal everywhere.
+  /// Guide::expected() of `v`. Light paths, and eye paths while it is unknown, use 1: as if it were
+  /// equal everywhere.
   float expected_behind(const Vertex& v) const {
     const float known = limits_.transport == Transport::radiance ? guide_.expected(v) : -1;
     return known < 0 ? 1 : known;

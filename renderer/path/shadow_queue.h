@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// Contributions that wait for their shadow rays. Embree traces many rays at a time 1.5 times as
-/// fast as single ones. Contributions are handed out in the order they were added, so sums have the
+/// Contributions pending their shadow rays. Embree traces many rays at a time 1.5 times as fast as
+/// single ones. Contributions are returned in the order in which they were added, so sums have the
 /// same bits for any number of threads.
 template <class Contribution>
 class ShadowQueue {
@@ -24,7 +24,7 @@ class ShadowQueue {
   std::size_t size() const { return rays_.size(); }
 
   /// Traces all rays, calls `lit(value)` for each unoccluded contribution, and empties the queue.
-  /// `between()` is called between some ten thousand rays; it may throw.
+  /// Calls `between()`, which may throw, between groups of 2^14 rays.
   template <class Lit, class Between = void (*)()>
   void flush(
       const RayCaster& caster, Counters& counters, Lit&& lit, Between&& between = [] {}) {

@@ -21,15 +21,15 @@ struct Splat {
 
 using Splats = std::vector<Splat>;
 
-/// The splats of a part, arranged by bands of the picture, so that several threads can add those of
-/// many parts, each thread to a band of its own.
+/// The splats of a part, sorted by bands of the picture, so that several threads can add the splats
+/// of many parts, each thread to a band of its own.
 class BandedSplats {
  public:
   static constexpr std::size_t bands = 64;
 
-  /// Where the part puts its splats.
+  /// The part appends its splats here.
   Splats& splats() { return splats_; }
-  /// Arranges them for a picture of `pixels` pixels.
+  /// Sorts them by band, for a picture of `pixels` pixels.
   void arrange(std::size_t pixels);
   /// Calls `use(splat)` for those in `band`, in the order they were made.
   template <class Use>

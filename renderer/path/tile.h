@@ -15,11 +15,11 @@ struct Tile {
   V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
 
   /// Pixels along a side of the blocks whose paths are traced together. Blocks begin at multiples
-  /// of it: where tiles do too, a pixel's block, and the packet of its camera ray, do not depend on
-  /// how a picture is divided into tiles.
+  /// of it. If tiles do too, the block of a pixel, and the packet of its camera ray, do not depend
+  /// on how the picture is divided into tiles.
   static constexpr int block_side = 8;
   int blocks() const { return blocks_along(0) * blocks_along(1); }
-  /// Block number `i`, as far as it is in the tile.
+  /// Block number `i`, clipped to the tile.
   Tile block(int i) const {
     const int across = blocks_along(0);
     const V2i corner = (first / block_side + V2i(i % across, i / across)) * block_side;
@@ -28,7 +28,8 @@ struct Tile {
                   std::min(first.y + size.y, corner.y + block_side));
     return {from, end - from};
   }
-  /// Pixel number `i` of a block: in a whole one eight after each other are 4 x 2 pixels.
+  /// Pixel number `i` of a block. In a whole block, eight consecutive ones (a packet) are a
+  /// rectangle of 4 x 2 pixels.
   V2i pixel_of_block(int i) const {
     if (size != V2i(block_side)) return pixel(i);
     return first + V2i(i % 4 + i / 8 % 2 * 4, i / 4 % 2 + i / 16 * 2);

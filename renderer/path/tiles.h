@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// Adds a contribution to a pixel. One that is not finite is dropped and counted: nothing
-/// non-finite enters a film.
+/// Adds a contribution to a pixel. One that is not finite is dropped and counted: no such value may
+/// enter a film.
 inline void accumulate(Rgb& pixel, const Rgb& value, Counters& counters) {
   if (!is_finite(value)) [[unlikely]] {
     ++counters.rejected;
@@ -98,8 +98,8 @@ inline void start_paths(const IterationContext& context, const Image& image, con
 }
 
 /// for_each_part() whose `work(i, counters, splats)` may also splat to any pixel. The splats are
-/// added to `image`, and handed to `arrived(splat)`, in the order of the parts; several threads
-/// call `arrived`, each for pixels of its own.
+/// added to `image` in the order of the parts, and `arrived(splat)` is called for each: by several
+/// threads, each for pixels of its own.
 template <class Work, class Arrived>
 Counters for_each_splatting_part(const IterationContext& context, int n, Image& image, Work&& work,
                                  Arrived&& arrived) {

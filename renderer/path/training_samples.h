@@ -19,13 +19,12 @@ struct TrainingSample {
   float pdf = 0;       ///< of `w`, per steradian; 0: the path ended, or left by a delta lobe
   float bsdf_pdf = 0;  ///< density of `w` by the BSDF alone
   float radiance = 0;  ///< luminance from `w`, as estimated by the rest of the path
-  /// Luminance that the path gathers behind the vertex over that of its throughput there.
+  /// Luminance of the path's contributions at later vertices, over that of its throughput here.
   float reflected = 0;
 };
 
-/// The training samples of an iteration, or a pass of it, by cell. The order within a cell is that
-/// of the parts of the iteration, so that what is learned has the same bits for any number of
-/// threads.
+/// The training samples of a pass of an iteration, sorted by cell; within a cell in the order of
+/// the parts, so that the learned state has the same bits for any number of threads.
 class TrainingSamples {
  public:
   using Part = std::vector<TrainingSample>;

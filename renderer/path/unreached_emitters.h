@@ -18,8 +18,8 @@ namespace lacuna {
 ///   N_e = N (sum_i c_i)^2 / sum_i (c_i^2 / p_i)
 ///
 /// paths from emitters that matter there. Where N_e < 1 the relative standard error is above 1: if
-/// one emitter lights the point, no path at all starts on it with a probability of e^-N_e > .37,
-/// the point is too dark, and nothing in the picture tells. Both sums are estimated with a few
+/// one emitter lights the point, no path at all starts on it with a probability of e^-N_e > .37:
+/// the point is then too dark, and the picture does not show it. Both sums are estimated with a few
 /// emitters for each point of a coarse grid of the film. Requires SceneNeeds::light_tree.
 std::vector<std::string> unreached_emitters(const Scene& scene, const Camera& camera, double paths);
 

@@ -8,14 +8,15 @@
 
 namespace lacuna {
 
-/// The cell of a guide (renderer/guides) whose distribution of directions is used at a surface.
+/// A reference to a cell of a guide (renderer/guides), whose distribution of directions is used at
+/// a surface.
 struct GuidingCell {
   static constexpr std::uint32_t none = 0xffffffff;
 
   /// Probability of sampling the cell's distribution instead of the BSDF; 0: there is none.
   float probability = 0;
-  std::uint32_t index = none;  ///< the distribution's number of the cell
-  std::uint32_t part = none;   ///< a place in the cell, for a distribution that needs it
+  std::uint32_t index = none;  ///< index of the cell in its GuidingDistribution
+  std::uint32_t part = none;   ///< index within the cell, for distributions that need one
 };
 
 /// One vertex of an eye path or a light path.
@@ -29,13 +30,14 @@ struct Vertex {
   V3f wp{0, 0, 0};          ///< unit, to the previous vertex
   Rgb throughput{1, 1, 1};  ///< product of f |cos| / pdf over the edges up to here
   Pdf<Area> p_fwd{};        ///< density of this vertex on this walk; background: per steradian
-  /// The sum over i < j in mis_partial_sum() over pdf_rev, which the next edge decides.
+  /// The sum over i < j of mis_partial_sum(), without the factor pdf_rev: that depends on the next
+  /// edge.
   double mis_partial = 0;
-  /// Vertex 1 of a light path: EmitterPoint::next_event_ratio of vertex 0 for this receiver. Of
-  /// other vertices 1.
+  /// Vertex 1 of a light path: EmitterPoint::next_event_ratio of vertex 0 for this receiver; 1 for
+  /// other vertices.
   float next_event_ratio = 1;
   GuidingCell guiding_cell;  ///< of the surface as seen from wp, for eye paths
-  std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
+  std::optional<Bsdf> bsdf;  ///< of a surface from which the path may continue
 
   /// The geometric normal on the side of wp.
   V3f side() const { return dot(surface.ng, wp) < 0 ? -surface.ng : surface.ng; }

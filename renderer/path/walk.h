@@ -27,22 +27,22 @@ struct WalkLimits {
   TechniqueCounts counts = {};
 };
 
-/// One part of a path that was split at its last vertex. It continues there on its own.
+/// One part of a path that was split at its last vertex. It continues from there on its own.
 struct PathBranch {
   PathState state{.rng = Rng(0, 0, 0), .ray = {}, .p = {}, .path = {}};
   Vertex vertex;         ///< the last one, with the throughput of the branch
   std::size_t walk = 0;  ///< index of the path that was split
 };
 
-/// What Walk::trace_paths() selects for vertices before they are visited: here nothing.
+/// A `selection` of Walk::trace_paths() that does nothing.
 struct NoSelection {
   static void before(std::size_t, int) {}
   static constexpr bool together() { return false; }
   static void choose(std::span<const std::size_t>) {}
 };
 
-/// Traces a batch of random walks through a scene, one edge of each at a time: the memory that a
-/// vertex needs is prefetched while the rays of the others are traced, which pays where a scene is
+/// Traces a batch of random walks through a scene, one edge of each at a time: the data of a vertex
+/// are prefetched while the rays of the other walks are traced, which is faster if the scene is
 /// larger than the caches. The guide (renderer/guides) samples the directions. The walks are
 /// independent: the results do not depend on the size of the batch.
 class Walk {
@@ -59,9 +59,11 @@ class Walk {
   /// depth the number of its edges, before the next direction is sampled. The densities of all
   /// vertices are per area. A `visit` that returns false ends its walk. A state whose depth is
   /// above 0 is a branch: it continues at its last vertex. New branches are appended to branches().
+  ///
+  /// `selection` prepares what `visit` needs of a vertex, as EmitterSelection does.
   /// `selection.before(i, depth)` is called before the ray to that vertex is traced. If
-  /// `selection.together()`, `selection.choose(paths)` is called for the vertices of all paths of
-  /// one length at once, before they are visited.
+  /// `selection.together()`, `selection.choose(paths)` is called once for the vertices of all
+  /// `paths`, before they are visited.
   template <class Visit, class Selection = NoSelection>
   void trace_paths(std::span<PathState> states, Visit&& visit, Selection&& selection = {}) {
     active_.resize(states.size());
@@ -99,7 +101,7 @@ class Walk {
 
   /// Where the last ray of path `i` hit.
   const Hit& hit(std::size_t i) const { return hits_[i]; }
-  /// The parts that paths were split into, in a fixed order. The caller removes and traces them.
+  /// The branches of the paths so far, in a fixed order. The caller removes and traces them.
   std::vector<PathBranch>& branches() { return branches_; }
 
  protected:
@@ -118,9 +120,9 @@ class Walk {
     if (is_hit) scene_.prefetch(hit);
   }
 
-  /// trace() of all first edges, eight at a time. In a packet the nearest of two triangles that a
-  /// ray hits at the same distance may be the other one: which rays are in one must not depend on
-  /// threads or tiles.
+  /// trace() for all first edges, in packets of eight. If a ray hits two triangles at the same
+  /// distance, which of them is found may depend on the packet: the rays of a packet must not
+  /// depend on threads or tiles.
   void trace_first(std::span<PathState> states) {
     constexpr std::size_t together = 8;
     std::array<Ray, together> rays;
@@ -184,7 +186,7 @@ class Walk {
     return parts > 0;
   }
 
-  /// The path itself keeps one of the parts.
+  /// Splits the path in `parts`: it continues as one of them, the others become branches.
   void split(PathState& w, const Vertex& v, int parts, std::size_t walk) {
     const float share = 1.0F / static_cast<float>(parts);
     w.throughput *= share;
@@ -212,7 +214,7 @@ class Walk {
     w.roulette.scale *= next->pdf_ratio;
     if (!roulette_.goes_on(w)) return false;
     v.delta = next->delta;
-    // Deltas cancel in all ratios of densities, if both walks leave them out.
+    // The delta functions cancel in all ratios of densities: both walks use density 1 instead.
     w.p = next->delta ? Pdf<SolidAngle>(1.0F) : next->pdf;
     if (tracked_) w.mis_partial = mis_partial(v, depth, next->wi);
     w.ray = {offset_origin(v.surface.x, v.surface.ng, v.surface.offset, next->wi), next->wi};
