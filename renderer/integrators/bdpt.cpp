@@ -14,18 +14,18 @@ namespace lacuna {
 
 namespace {
 
-/// What paired connections are combined with.
+/// The techniques that PairedBdpt combines.
 struct Merging {
-  bool merge = false;   ///< eye vertices with the vertices of all light paths (mis.h)
-  bool connect = true;  ///< all strategies but s = 0
+  bool merge = false;   ///< merge eye vertices with the vertices of all light paths (mis.h)
+  bool connect = true;  ///< use all strategies (s, t), else s = 0 only
   RadiusSettings radius = {};
 };
 
 /// connections: paired. The eye path of pixel j is connected to light path j; for s = 1 a new point
 /// on an emitter is sampled at each vertex. With merging: vertex connection and merging (Georgiev
-/// et al. 2012). Then all light paths are walked before the eye paths, for their photons; the
-/// vertices that are connected are made anew from these, which takes less memory than to keep them
-/// whole.
+/// et al. 2012). Then all light paths are traced before the eye paths, for their photons. The
+/// vertices for connections are restored from the photons, which takes less memory than storing
+/// whole vertices.
 class PairedBdpt final : public Bdpt {
   using Base = Bdpt;
   using Base::EyePaths;
@@ -74,7 +74,8 @@ class PairedBdpt final : public Bdpt {
   }
 
  private:
-  /// How s = 1 selects emitters. Photons have no room for EmitterPoint::next_event_ratio.
+  /// How next event estimation (s = 1) selects emitters. With merging by power, because a Photon
+  /// does not store Vertex::next_event_ratio.
   EmitterChoice emitters() const {
     const auto* paired = std::get_if<PairedSettings>(&settings_.connections);
     return merging_.merge || paired == nullptr ? EmitterChoice::power : paired->emitters;
@@ -146,12 +147,12 @@ class PairedBdpt final : public Bdpt {
     return sum;
   }
 
-  /// The light paths that the batch is connected to.
+  /// Traces, or restores, the light paths that the eye paths of the batch are connected to.
   void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters,
                   Splats& splats) const {
     const std::size_t paths = pairs.eye.states.size();
     pairs.rngs.clear();
-    if (pairs.eye.counts.merge > 0) {  // photon_pass() has walked, counted and splatted them
+    if (pairs.eye.counts.merge > 0) {  // photon_pass() has traced, counted and splatted them
       const auto& pixels = pairs.eye.pixels;
       pairs.light.clear();
       for (std::size_t k = 0; k < paths; ++k) photons_.restore_path(pixels[k], pairs.light, k);
@@ -233,8 +234,8 @@ class PairedBdpt final : public Bdpt {
   PhotonSeconds seconds_;
 };
 
-/// Connections to light paths that all pixels share, resampled at each eye vertex. The shared paths
-/// are the first of those connected to the eye (t = 1).
+/// Connections to vertices of light paths that all pixels share, resampled at each eye vertex. The
+/// shared paths are the first of those whose vertices are connected to the eye (t = 1).
 template <SharedConnections Choice>
 class ResampledBdpt final : public Bdpt {
   using Base = Bdpt;

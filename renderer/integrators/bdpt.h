@@ -12,8 +12,8 @@ namespace lacuna {
 
 /// A contribution of a strategy to a pixel of the tile.
 struct BdptContribution {
-  std::uint8_t path = 0;  ///< of the eye, in its batch
-  std::uint8_t distribution = 0;
+  std::uint8_t path = 0;          ///< index of the eye path in its batch
+  std::uint8_t distribution = 0;  ///< VertexSample::distribution
   float survival = 1;          ///< probability of making the connection; `value` is divided by it
   float throughput = 0;        ///< luminance of the eye vertex' throughput
   std::uint32_t cell = 0;      ///< of the eye vertex, for CellStatistics
@@ -22,7 +22,7 @@ struct BdptContribution {
   std::uint16_t s = 0, t = 0;  ///< vertices sampled from the light and from the eye
 };
 
-/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11), apart from the choice of the light
+/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11), except for the selection of the light
 /// vertices that an eye vertex is connected to.
 class Bdpt : public GuidedIntegrator {
  public:
@@ -39,20 +39,21 @@ class Bdpt : public GuidedIntegrator {
     bool gathers = false;
     ShadowQueue<BdptContribution> queue;  // of connections
   };
-  /// What the parts of a tile's work share.
+  /// The arguments that all functions of a tile's pass share.
   struct TilePass {
     const IterationContext& context;
     Image& image;
     Counters& counters;
   };
 
-  /// The sink of all contributions: `value`, weighted, of vertex `depth` of path `i`.
+  /// Adds `value`, weighted, of vertex `depth` of path `i` to its pixel and for the guide. All
+  /// contributions but splats go through this function.
   void contribute(const TilePass& pass, EyePaths& batch, std::size_t i, int depth,
                   const Rgb& value) const {
     accumulate(pass.image.pixels[batch.pixels[i]], value, pass.counters);
     if (batch.gathers) batch.gathered.add(i, depth, value);
   }
-  /// The same of a strategy of the pyramid, which may have a layer.
+  /// The same for a strategy of the pyramid (StrategyLayers): also fills its layer.
   void contribute(const TilePass& pass, EyePaths& batch, const BdptContribution& c) const {
     contribute(pass, batch, c.path, c.t - 1, c.value * c.weight);
     layers_.strategy(pass.context.layers, c.s, c.t, {batch.pixels[c.path], c.value, c.weight});
@@ -81,8 +82,9 @@ class Bdpt : public GuidedIntegrator {
     return v.bsdf->connectible() ? settings_.max_depth - depth : 0;
   }
 
-  /// Connects `eye` and `light` and queues the contribution, over `samples`: the expected number of
-  /// samples of this light vertex. `known` has the members that the connection does not determine.
+  /// Connects `eye` and `light` and queues the contribution, divided by `samples`: the expected
+  /// number of samples of this light vertex. `known`: the members of the contribution that do not
+  /// follow from the connection.
   template <class Light>
   static void queue_connection(const SurfaceEndpoint& eye, const Light& light, double samples,
                                BdptContribution known, EyePaths& batch) {
@@ -95,8 +97,8 @@ class Bdpt : public GuidedIntegrator {
     batch.queue.add(shadow_ray(eye, light, c), known);
   }
 
-  /// Traces the queued shadow rays of `batch`, adds the unoccluded connections, and passes each to
-  /// `arrived(contribution)`.
+  /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions, and calls
+  /// `arrived(contribution)` for each.
   template <class Arrived>
   void flush(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
     const IterationContext& context = pass.context;
@@ -110,8 +112,8 @@ class Bdpt : public GuidedIntegrator {
         },
         [&] { context.check_stop(); });
   }
-  /// The same while paths of the batch go on, if so many rays are queued that they take much
-  /// memory: two paths of a thousand edges have a million connections.
+  /// flush() if the queue takes much memory, while the paths of the batch continue: two paths of a
+  /// thousand edges have a million connections.
   template <class Arrived>
   void flush_if_long(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
     constexpr std::size_t many = 1 << 17;

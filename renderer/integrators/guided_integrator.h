@@ -5,8 +5,8 @@
 
 namespace lacuna {
 
-/// An integrator whose paths follow a guide (renderer/guides). The guide determines its needs,
-/// its preparation and its learned state.
+/// An integrator whose paths are sampled by a guide (renderer/guides): needs(), prepare(), save(),
+/// load() and statistics() are those of the guide.
 class GuidedIntegrator : public Integrator {
  public:
   explicit GuidedIntegrator(Guide guide) : guide_(std::move(guide)) {}

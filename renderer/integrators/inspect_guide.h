@@ -6,20 +6,20 @@
 
 namespace lacuna {
 
-/// A guide for integrator `inspect`: its cells, their probabilities, or its density at one surface
-/// point, visible at a position of the picture, for the directions to all other visible points (as
-/// Noel 2015, Fig. 70b and 86).
+/// Shows a guide, for the integrator `inspect`: its cells, their probabilities, or its density at
+/// one visible surface point for the directions to all other visible points (as in Noel 2015, Fig.
+/// 70b and 86).
 class GuideView {
  public:
   GuideView(const InspectSettings& settings, const PrepareContext& context);
 
-  /// What path tracing with this guide needs.
+  /// Integrator::needs() of path tracing with this guide.
   static SceneNeeds needs(const GuideSettings& guide);
 
-  /// Call before colour(), for the iteration's picture. The first call lets the guide learn. Throws
+  /// Call at the start of an iteration, before colour(). The first call trains the guide. Throws
   /// IterationStopped.
   void start(const IterationContext& context, const Image& image);
-  /// At `s`, which the eye sees along unit `d`.
+  /// The colour of the surface `s`, which the camera sees along unit `d`.
   Rgb colour(const Scene& scene, const Surface& s, const V3f& d, std::uint64_t seed,
              Counters& counters) const;
 
@@ -32,9 +32,9 @@ class GuideView {
   Rgb density(const Scene& scene, const Surface& s, const V3f& d, Counters& counters) const;
 
   InspectSettings settings_;
-  int learned_ = 0;  // iterations
+  int learned_ = 0;  // iterations of training so far
   std::unique_ptr<PathTracer> tracer_;
-  Vertex point_;  // without Bsdf: the eye ray hit nothing
+  Vertex point_;  // where the density is shown; without a Bsdf if the camera ray hit nothing
 };
 
 }  // namespace lacuna

@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// The analysis of the empty space for integrator `inspect`: the value of the voxel in front of a
-/// surface point.
+/// Shows the analysis of the empty space, for the integrator `inspect`: the value of the voxel in
+/// front of a surface point.
 class SpaceView {
  public:
   /// Builds only the artefacts that the quantity needs. The context's space must outlive the view.
@@ -23,6 +23,7 @@ class SpaceView {
 
  private:
   std::uint32_t label_of_node(std::uint32_t node) const;
+  /// Green if the node is visible from `s`, else red.
   Rgb sight(const Scene& scene, const Surface& s, std::uint32_t node, Counters& counters) const;
 
   InspectQuantity quantity_;

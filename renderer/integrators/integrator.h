@@ -29,8 +29,8 @@ class Integrator {
   /// one image for each name in IterationContext::layers and adds only finite values to it. The
   /// settings list the layers that an integrator fills (filled_layers()).
   virtual std::vector<std::string> layers(std::span<const ImageLayer> /*wanted*/) { return {}; }
-  /// Renders one more estimate of the whole picture into `image` (of the film's size, black):
-  /// independent of the others, but for numbers that IterationContext::sampler spreads over them.
+  /// Renders one more estimate of the whole picture into `image` (of the film's size, black). The
+  /// estimates are independent, unless IterationContext::sampler stratifies them.
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
   /// Names and numbers for the report, of this process' iterations.
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }

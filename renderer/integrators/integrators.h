@@ -4,8 +4,8 @@
 
 namespace lacuna {
 
-// What registry.cpp chooses from: each is defined in the source of its name, but vcm beside bdpt,
-// and sppm and photon_map in photon_mapping.cpp.
+// The functions that registry.cpp calls. Each is defined in the source of its name, except make_vcm
+// (bdpt.cpp), and make_sppm and make_photon_map (photon_mapping.cpp).
 std::unique_ptr<Integrator> make_path(const PathSettings& settings);
 std::unique_ptr<Integrator> make_light(const LightSettings& settings);
 std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings);

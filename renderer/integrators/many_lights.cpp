@@ -18,7 +18,7 @@ namespace lacuna {
 namespace {
 
 /// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path gathers
-/// all virtual lights. Path tracing continues from there for the light that they lack.
+/// all virtual lights. Path tracing continues from there for the light that they do not give.
 template <Visibility V>
 class ManyLights final : public Integrator {
  public:
@@ -114,10 +114,10 @@ class ManyLights final : public Integrator {
     const VplContributions& terms;
     VplSampler* sampler;  // null: all lights
     LightFilter* filter;  // null: none
-    BlockRange range;     // of this pass; what does not come from lights is added in the first
+    BlockRange range;     // of this pass; the first pass adds all other light
   };
 
-  /// Samples the lights; null: all lights are gathered.
+  /// The settings of light sampling; null: all lights are gathered.
   const RandomLightsSettings* random() const {
     return std::get_if<RandomLightsSettings>(&settings_.gather);
   }
@@ -204,8 +204,8 @@ struct ManyLights<V>::Part {
   std::vector<LightSum> of_points = {};
 };
 
-/// Renders the eye paths of a tile: emission, direct light, the virtual lights at their shading
-/// points, and the light that these leave to path tracing.
+/// Renders the eye paths of a tile: emission, direct light, the virtual lights at the shading
+/// points, and by path tracing the light that virtual lights do not give.
 template <Visibility V>
 class ManyLights<V>::TilePass {
  public:
@@ -232,7 +232,7 @@ class ManyLights<V>::TilePass {
   }
 
  private:
-  /// The sink of emission and direct light for the pixel of path `i`.
+  /// Adds emission or direct light to the pixel of path `i`.
   void contribute(std::size_t i, const Rgb& value) { batch_.radiance[i] += value; }
 
   void trace_paths() {
@@ -252,7 +252,7 @@ class ManyLights<V>::TilePass {
                         [&](const typename Part::Direct& d) { contribute(d.path, d.value); });
   }
 
-  /// Visits a vertex of eye path `i`; false where the path ends.
+  /// Visits a vertex of eye path `i`; false if the path ends.
   bool visit(std::size_t i, int depth) {
     Vertex& v = batch_.vertex(i, depth);
     const bool first = part_.shaded[i] == 0;
@@ -313,7 +313,7 @@ class ManyLights<V>::TilePass {
       LightSum& sum = part_.sums[part_.paths[k]] = part_.of_points[k];
       if (with_.filter != nullptr) {
         with_.filter->add(part_.points[k], sum.value);
-        sum.value = V3d(0, 0, 0);  // until all pixels are there
+        sum.value = V3d(0, 0, 0);  // add_filtered() adds it when all pixels have been gathered
       }
     }
   }

@@ -16,18 +16,18 @@ namespace lacuna {
 
 namespace {
 
-/// Numbers of an iteration's independent samples and chains.
+/// The number of independent samples, chains and mutations of an iteration.
 struct ChainPlan {
-  std::int64_t samples = 0;  ///< independent: of the bootstrap
+  std::int64_t samples = 0;  ///< independent samples of the bootstrap
   std::int64_t chains = 0;
   std::int64_t mutations = 0;  ///< of each chain
 };
 
 /// Metropolis light transport (Veach and Guibas 1997; Noel 2015, 4.6). Each iteration is an
-/// estimate of its own: independent samples give the brightness of the picture, and chains start at
-/// samples that are drawn in proportion to what they contribute. So chains need no time to forget
-/// where they started, and the estimate is unbiased (Veach 1997, 11.3.1); and iterations are
-/// independent of each other, so that the film's variance and its halves tell the true error.
+/// independent estimate: independent samples give the brightness of the picture, and chains start
+/// at samples selected in proportion to their contribution. So there is no start-up bias, and the
+/// estimate is unbiased without a burn-in (Veach 1997, 11.3.1). Because iterations are independent,
+/// the variance of the film and its two halves show the true error.
 template <Mutation M, class Settings>
 class Metropolis final : public Integrator {
  public:
@@ -162,8 +162,8 @@ class Metropolis final : public Integrator {
     return static_cast<std::uint32_t>(morton_code(brightest->index % w, brightest->index / w, 0));
   }
 
-  /// Draws the independent samples. Each depends on its number alone, so that a chain draws the one
-  /// that it starts at again.
+  /// Evaluates the independent samples. Each depends on its number alone, so that a chain can
+  /// evaluate its first one again.
   Counters bootstrap(const IterationContext& context, std::vector<Sample>& samples) const {
     constexpr std::size_t part = 16 * M::size;
     const int parts = static_cast<int>((samples.size() + part - 1) / part);
@@ -185,8 +185,8 @@ class Metropolis final : public Integrator {
     });
   }
 
-  /// Numbers of the samples at which the chains start: each in proportion to its scalar, by
-  /// systematic resampling along the film, so that each region of it has its share.
+  /// Numbers of the samples at which the chains start. Systematic resampling, in proportion to the
+  /// scalars and in the order of the film, gives each region its share of the chains.
   static std::vector<std::size_t> choose_starts(const IterationContext& context,
                                                 const ChainPlan& plan,
                                                 std::span<const Sample> samples, double sum) {
@@ -207,13 +207,13 @@ class Metropolis final : public Integrator {
     return starts;
   }
 
-  /// Advances all chains and adds what they meet to `image`, times `share`.
+  /// Advances all chains and adds the contributions of their states to `image`, times `share`.
   Counters run_chains(const IterationContext& context, const ChainPlan& plan,
                       const std::vector<std::size_t>& starts, double share, Image& image) {
-    // What is in memory together: chains, and splats between two additions to the picture.
+    // Limits of memory: chains at a time, and mutations between two additions of splats.
     constexpr std::size_t together = 1024;
     constexpr std::int64_t round = 512;
-    // A few batches for each thread: results do not depend on how chains are divided into them.
+    // A few batches for each thread; the results do not depend on the size of the batches.
     const auto of_batch = std::clamp(starts.size() / (4 * std::size_t(context.pool.threads())),
                                      std::size_t{1}, std::size_t{M::size});
     Counters sum;
@@ -276,7 +276,8 @@ class Metropolis final : public Integrator {
       for (std::size_t k = 0; k < n; ++k) decide(k);
     }
 
-    /// Both states count, by the probability that the chain is there next (Veach 1997, 11.3.2.1).
+    /// Both states contribute, weighted by the probability that the chain is in them next: expected
+    /// values instead of one sample (Veach 1997, 11.3.2.1).
     void decide(std::size_t k) {
       const double a = m.proposed(k).scalar > 0 ? std::min(1.0, m.acceptance_ratio(k)) : 0.0;
       stay[k] += 1 - a;

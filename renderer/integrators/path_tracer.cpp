@@ -65,14 +65,14 @@ class PathTracer::TilePass {
   }
 
  private:
-  /// One sample of each pixel, with the branches of its path.
+  /// Traces one path for each pixel, with its branches.
   void render_block(const Tile& block, TrainingSamples::Part& samples) {
     start_paths(context_, image_, block, batch_);
     tracer_.seen_.add(context_, block, counters_,
                       [&](std::size_t pixel, const Rgb& value) { add(pixel, value); });
     counters_.samples += batch_.states.size();
     const bool learns = tracer_.guide_.learns_from(block.pixel(0), context_, settings_.max_depth);
-    if (learns && !gathers_) trace_shadows();  // those that wait are of other paths
+    if (learns && !gathers_) trace_shadows();  // the queued ones belong to earlier paths
     gathers_ = learns;
     reuse_.begin(Rng(context_.seed, 0, batch_.pixels[0], Rng::Purpose::groups));
     do {
@@ -89,13 +89,13 @@ class PathTracer::TilePass {
                   [&](std::uint32_t pixel, const Rgb& value) { add(pixel, value); });
   }
 
-  /// Traces the paths of the batch; next event estimation waits for trace_shadows().
+  /// Traces the paths of the batch. trace_shadows() adds the light of next event estimation.
   void trace_paths() {
     walk_.trace_paths(
         batch_.states, [this](std::size_t i, int depth) { visit(i, depth); }, selection_);
   }
 
-  /// Emission at vertex `depth` of path `i`, and next event estimation there.
+  /// Adds emission at vertex `depth` of path `i`, and queues next event estimation there.
   void visit(std::size_t i, int depth) {
     const Vertex& v = batch_.vertex(i, depth);
     const bool apart = depth == 1 && tracer_.seen_.rays(batch_.pixels[i]) > 0;
@@ -113,15 +113,15 @@ class PathTracer::TilePass {
                    });
   }
 
-  /// Traces the shadow rays that wait, and adds what they find.
+  /// Traces the queued shadow rays and adds the unoccluded contributions.
   void trace_shadows() {
     shadows_.flush(context_.scene.rays(), counters_,
                    [&](const Direct& d) { contribute(d.pixel, d.path, d.depth, 1, d.value); });
   }
 
-  /// The sink of all contributions: `value` of the path `i` of `pixel` by the strategy `s` at its
-  /// vertex `depth`. Light behind vertex 2 goes to the pixels that share it, all other to `pixel`;
-  /// a guide that learns gets both.
+  /// Adds `value`, of vertex `depth` of path `i` of `pixel` by the strategy `s`. All contributions
+  /// but SeenEmission go through this function. Light from beyond vertex 2 goes to the pixels that
+  /// share it, other light to `pixel`; the training samples get both.
   void contribute(std::size_t pixel, std::size_t i, int depth, int s, const Rgb& value) {
     const bool shared = depth + s > 2 && reuse_.shares(i);
     if (shared) {
@@ -144,7 +144,7 @@ class PathTracer::TilePass {
   DirectLight direct_;
   EyeBatch batch_;
   EmitterSelection selection_;      // for next event estimation
-  ShadowQueue<Direct> shadows_;     // its contributions
+  ShadowQueue<Direct> shadows_;     // contributions of next event estimation
   GatheredLight gathered_{batch_};  // for a guide that learns
   bool gathers_ = false;
   PathReuse reuse_;
@@ -153,7 +153,7 @@ class PathTracer::TilePass {
 
 Counters PathTracer::iterate(const IterationContext& context, Image& image) {
   if (guide_.first_pass().end == LearningPass::parts) return render_passes(context, image);
-  // A stopped iteration leaves no trace.
+  // The first iteration updates the guide between its passes: a stopped one must restore it.
   ByteWriter before;
   guide_.save(before);
   try {

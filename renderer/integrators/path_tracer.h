@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// Path tracing (Noel 2015, 4.2): the strategies s = 0, an emitter hit by the walk, and s = 1, next
-/// event estimation at every vertex, weighted against each other.
+/// Path tracing (Noel 2015, 4.2): the walk hits an emitter (s = 0), and next event estimation at
+/// every vertex (s = 1), combined by MIS (DirectLight).
 class PathTracer final : public GuidedIntegrator {
  public:
   PathTracer(const PathSettings& settings, Guide guide);

@@ -13,7 +13,7 @@ namespace lacuna {
 
 namespace {
 
-/// What photon mapping and its progressive form differ in.
+/// The settings that photon mapping has and its progressive form does not.
 struct Density {
   std::size_t nearest = 0;         ///< PhotonMapSettings
   bool final_gather = false;       ///< PhotonMapSettings
@@ -21,13 +21,14 @@ struct Density {
 };
 
 /// Photon mapping (Jensen 1996; Noel 2015, 4.5) and its progressive form (Hachisuka and Jensen
-/// 2009; Knaus and Zwicker 2011). An eye path is followed through mirrors and glass to the first
-/// rough surface, where direct light is sampled and the density of the photons around it gives the
-/// rest. Each iteration has its own photons.
+/// 2009; Knaus and Zwicker 2011). An eye path is traced through mirrors and glass to the first
+/// rough surface. There direct light is sampled, and the density of the photons around the vertex
+/// gives all other light. Each iteration has its own photons.
 ///
-/// Every path of light is counted once, by what its first rough vertex x from the eye receives:
-/// direct light; caustics, which reach x from an emitter by way of mirrors and glass only; the
-/// rest. With a final gather the rest comes from the photons at the next rough vertex.
+/// Each path from an emitter to the eye is counted once, by the light that its first rough vertex x
+/// from the eye receives: direct light; caustics, which reach x from an emitter through mirrors and
+/// glass only; or other light. With a final gather, other light comes from the photons at the next
+/// rough vertex.
 class PhotonMapping final : public Integrator {
  public:
   PhotonMapping(const PhotonTracing& settings, const Density& density, Guide light_guide)
@@ -69,34 +70,34 @@ class PhotonMapping final : public Integrator {
   }
 
  private:
-  /// Where an eye path is.
+  /// The position of an eye path.
   enum class Stage : std::uint8_t {
-    seeing,     ///< behind mirrors and glass only
+    seeing,     ///< it passed mirrors and glass only
     at_first,   ///< at its first rough vertex
-    last_edge,  ///< on the edge behind it, which may hit an emitter
-    gathering,  ///< behind it, until the next rough vertex
-    at_second,  ///< there
+    last_edge,  ///< on the edge after it, which may hit an emitter
+    gathering,  ///< after it, before the next rough vertex
+    at_second,  ///< at that vertex
   };
-  /// The photons that count in a look-up.
+  /// The kinds of photons that a look-up uses.
   struct Wanted {
-    bool direct = false;    ///< of direct light
-    bool caustics = false;  ///< by mirrors and glass only
+    bool direct = false;    ///< on the first vertex of their light path
+    bool caustics = false;  ///< that passed mirrors and glass only
     bool others = false;
     bool any() const { return direct || caustics || others; }
     bool of(const Photon& p) const { return of(p.index, p.caustic); }
-    /// `index`, `caustic`: of the photon.
+    /// Whether it uses a photon with this Photon::index and Photon::caustic.
     bool of(int index, bool caustic) const {
       if (index == 1) return direct;
       return caustic ? caustics : others;
     }
   };
-  /// At the first rough vertex, of photons_.
+  /// The photons of photons_ that the look-up at the first rough vertex uses.
   Wanted at_first() const {
     return {!settings_.next_event_estimation, density_.caustic_paths == 0, !density_.final_gather};
   }
   class TilePass;
 
-  /// Whether photons are looked up here.
+  /// Whether photons are looked up at `v`.
   bool is_rough(const Vertex& v) const { return v.bsdf->is_vpl_receiver(least_alpha_); }
 
   Counters light_pass(const IterationContext& context, std::int64_t paths, Image& image) {
@@ -107,7 +108,7 @@ class PhotonMapping final : public Integrator {
     const LightPathSetting setting{context.scene,          context.camera,
                                    settings_.max_depth,    settings_.roulette_depth,
                                    SampleCounts{.hit = 0}, true};
-    // What is never looked up is not stored: with next event estimation, a photon of each path.
+    // Photons that no look-up uses are not stored: with next event estimation, one of each path.
     const Wanted kept = density_.final_gather ? Wanted{true, true, true} : at_first();
     return lacuna::light_pass(
         {context, setting, all, image}, light_guide_,
@@ -180,7 +181,7 @@ class PhotonMapping::TilePass {
   /// CPU seconds of this thread.
   double look_up_seconds() const { return look_up_seconds_; }
 
-  // The selection of Walk::trace_paths(): no emitter is sampled behind the first rough vertex.
+  // The selection of Walk::trace_paths(): no emitter is sampled after the first rough vertex.
   void before(std::size_t i, int depth) {
     if (stage_[i] <= Stage::at_first) selection_.before(i, depth);
   }
@@ -198,10 +199,11 @@ class PhotonMapping::TilePass {
     bool first;  ///< at the first rough vertex
   };
 
-  /// The sink of all contributions to the pixel of path `i`.
+  /// Adds a contribution to the pixel of path `i`. All contributions go through this function.
   void contribute(std::size_t i, const Rgb& value) { batch_.radiance[i] += value; }
 
-  /// Takes the edge to the vertex at `depth` into account; false where the path ends before it.
+  /// Updates the stage for the edge to the vertex at `depth` and adds the emission there, if it
+  /// counts; false if the path ends on that edge.
   bool arrive(std::size_t i, int depth) {
     const Vertex& v = batch_.vertex(i, depth);
     Stage& stage = stage_[i];
@@ -217,7 +219,7 @@ class PhotonMapping::TilePass {
     return stage != Stage::last_edge;
   }
 
-  /// One vertex of an eye path; false where the path ends.
+  /// Visits a vertex of an eye path; false if the path ends.
   bool visit(std::size_t i, int depth) {
     stop_.check(context_);
     const Vertex& v = batch_.vertex(i, depth);
@@ -266,8 +268,8 @@ class PhotonMapping::TilePass {
     look_up_seconds_ += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
   }
 
-  /// The radiance that the photons of `map` around an eye vertex give, times the number of their
-  /// light paths.
+  /// Estimate of the radiance by the photons of `map` around an eye vertex, times the number of
+  /// their light paths.
   Rgb estimate(const PhotonMap& map, const Wanted& wanted, const LookUp& at) {
     const Vertex& v = batch_.vertex(at.path, at.depth);
     const SurfaceEndpoint eye{v, at.depth, Transport::radiance, mapping_.guide_};
@@ -289,7 +291,8 @@ class PhotonMapping::TilePass {
     return Rgb(sum / (std::numbers::pi * radius2));
   }
 
-  /// At squared distance `d2` in units of the radius; its mean over the disc is 1.
+  /// Kernel of the density estimate at squared distance `d2`, in units of the radius; its mean over
+  /// the disc is 1.
   double kernel(double d2) const {
     switch (settings_.kernel) {
       case PhotonKernel::cone:
@@ -314,7 +317,7 @@ class PhotonMapping::TilePass {
   ShadowQueue<Direct> shadows_;
   std::array<Stage, EyeBatch::size> stage_ = {};
   std::vector<LookUp> look_ups_;
-  std::vector<PointTree::Found> nearest_;  // and the next one
+  std::vector<PointTree::Found> nearest_;  // room for one more than Density::nearest
   double look_up_seconds_ = 0;
   SparseStop stop_;
   Walk walk_;

@@ -11,10 +11,10 @@
 namespace lacuna {
 namespace {
 
-/// Emission is one value where it differs by less than this part of the largest.
+/// A pixel sees one value if the luminances differ by less than this fraction of the largest.
 constexpr float alike = 0.01F;
 
-constexpr std::size_t most_rays = 16;  // of a pixel
+constexpr std::size_t most_rays = 16;  // SeenEmission::rays()
 
 Rgb emission_at(const Scene& scene, const Ray& ray, bool is_hit, const Hit& hit) {
   if (!is_hit) return scene.emitters().background(ray.d);
@@ -41,7 +41,7 @@ void stratified(int side, Rng& rng, At&& at) {
   }
 }
 
-/// Of the luminances that are added.
+/// The range of the luminances that are added.
 struct Range {
   float low = std::numeric_limits<float>::infinity(), high = 0;
 
@@ -51,7 +51,7 @@ struct Range {
   }
 };
 
-/// The luminance that four rays through each pixel see.
+/// For each pixel, the range of the emitted luminances along four camera rays.
 std::vector<Range> seen_ranges(const PrepareContext& context) {
   const Camera& camera = context.camera;
   const auto width = static_cast<std::size_t>(camera.width());
@@ -75,7 +75,8 @@ std::vector<Range> seen_ranges(const PrepareContext& context) {
   return seen;
 }
 
-/// By how much the luminances around a pixel differ, of those in a film of `size`; 0: they do not.
+/// The range of the luminances in the 3 x 3 pixels around `pixel`, in a film of `size`; 0 if they
+/// are one value.
 float difference_around(const std::vector<Range>& seen, const V2i& size, const V2i& pixel) {
   Range around;
   for (int y = std::max(pixel.y - 1, 0); y <= std::min(pixel.y + 1, size.y - 1); ++y) {
@@ -87,12 +88,12 @@ float difference_around(const std::vector<Range>& seen, const V2i& size, const V
   return range > alike * around.high ? range : 0.0F;
 }
 
-/// A triangle as an eye sees it: what is needed to look for it in the film.
+/// The position of a triangle in the film.
 struct SeenTriangle {
   std::array<V3f, 4> points;             ///< the corners and the centre, from the eye
   V2f low{HUGE_VALF}, high{-HUGE_VALF};  ///< the box around it in the film, pixels
 };
-/// None where a corner is not in the film.
+/// None if a corner is not in the film.
 std::optional<SeenTriangle> seen_triangle(const Camera& camera, const Mesh& mesh,
                                           const std::array<std::uint32_t, 3>& corners) {
   SeenTriangle t;
@@ -109,8 +110,8 @@ std::optional<SeenTriangle> seen_triangle(const Camera& camera, const Mesh& mesh
   return t;
 }
 
-/// Calls `at(pixel, luminance)` for the pixels around each emitting triangle that is smaller than
-/// two of them and not hidden: rays may miss it.
+/// Calls `at(pixel, luminance)` for the pixels around each visible emitting triangle that is at
+/// most two pixels large: the rays of seen_ranges() may miss it.
 template <class At>
 void for_each_small_emitter(const PrepareContext& context, At&& at) {
   constexpr float small = 2;  // pixels
@@ -167,7 +168,7 @@ void SeenEmission::share_rays(const std::vector<float>& apart) {
   for (const float a : apart) largest = std::max(largest, double(a));
   if (!(largest > 0)) return;
   const std::size_t budget = apart.size() / 2;
-  // All get most_rays, or as many as their share of the largest gives them.
+  // Rays in proportion to the range, at most most_rays: halves the factor until all fit the budget.
   for (double per_range = 0x1p20;; per_range /= 2) {
     std::size_t sum = 0;
     for (std::size_t i = 0; i < apart.size(); ++i) {

@@ -9,24 +9,24 @@
 
 namespace lacuna {
 
-/// The emission that a camera sees directly: paths of one edge. Most pixels see one value, and one
-/// sample is exact there; those on the border of an emitter, where most of the variance of a simple
-/// scene is, are worth many camera rays, which are the cheapest of all.
+/// The emission that a camera sees directly: paths of one edge. Most pixels see a single value, for
+/// which one sample is exact. Pixels on the border of an emitter cause most of the variance of a
+/// simple scene: they get many camera rays, which are the cheapest rays.
 class SeenEmission {
  public:
   /// Finds the pixels that see several values.
   void prepare(const PrepareContext& context);
-  /// Adds an unbiased estimate to `image`, the film that was prepared or fewer pixels of the same
-  /// view: one sample of a pixel that sees one value, `samples` or a few more, stratified, of the
-  /// others.
+  /// Adds an unbiased estimate to `image`, which has the size of the prepared camera's film or
+  /// fewer pixels of the same view: one sample for a pixel that sees one value,
+  /// ceil(sqrt(samples))^2 stratified samples for the others.
   Counters add(const IterationContext& context, double samples, Image& image) const;
 
-  /// Camera rays that `pixel` is worth beside paths that are traced from it: a power of two of at
-  /// most 16, in proportion to how far the values lie apart, and at most half of the number of
-  /// pixels for all of them. 0: the path's own is enough.
+  /// Number of additional camera rays for `pixel`: a power of two, at most 16, in proportion to the
+  /// range of the values that it sees; for all pixels together at most half of the number of
+  /// pixels. 0: none, the camera ray of the pixel's path is enough.
   int rays(std::size_t pixel) const { return worth_any_ ? rays_of(pixel) : 0; }
-  /// Traces rays() of each pixel of `block` and calls `add(pixel, value)` with an unbiased estimate
-  /// of the emission that it sees, if there are any. Then the paths leave it out.
+  /// For each pixel of `block` with rays() > 0, traces them and calls `add(pixel, value)` with an
+  /// unbiased estimate of the emission that it sees. The pixel's path must then leave it out.
   template <class Add>
   void add(const IterationContext& context, const Tile& block, Counters& counters,
            Add&& add) const {
@@ -44,8 +44,7 @@ class SeenEmission {
   std::size_t uneven_pixels() const;
 
  private:
-  /// What is known of a pixel. `even`: it sees one value; `one`: several, which are not worth rays
-  /// of their own; others are the number of rays.
+  /// `even`: the pixel sees one value. `one`: several, but it has no additional rays. Else: rays().
   using Known = std::uint8_t;
   static constexpr Known even = 0, one = 1;
 
@@ -54,7 +53,7 @@ class SeenEmission {
   static Rgb mean(const IterationContext& context, std::size_t pixel, int n, Counters& counters);
 
   std::vector<Known> known_;  // of each pixel; empty where nothing emits
-  bool worth_any_ = false;    // some pixel is worth rays of its own
+  bool worth_any_ = false;    // rays() > 0 for some pixel
 };
 
 }  // namespace lacuna

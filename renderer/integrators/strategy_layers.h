@@ -15,7 +15,8 @@ namespace lacuna {
 /// distribution (Fig. 106).
 class StrategyLayers {
  public:
-  /// Integrator::layers() for paths of up to `max_depth` edges and these distributions.
+  /// Selects the layers in `wanted` and returns their names, as Integrator::layers(), for paths of
+  /// up to `max_depth` edges. `distributions`: names; empty: none.
   std::vector<std::string> choose(std::span<const ImageLayer> wanted, int max_depth,
                                   std::span<const std::string_view> distributions,
                                   bool merges = false);
@@ -49,7 +50,7 @@ class StrategyLayers {
     const int k = s + t - 1;
     return (k - 1) * (k + 2) / 2 + s;
   }
-  /// To image `at` of those of the techniques.
+  /// Adds to image `at` of the pyramid, weighted and unweighted.
   void add(std::span<Image> layers, int at, const Sample& s) const {
     if (weighted_ >= 0) add(layers, weighted_ + at, s.pixel, s.unweighted * s.weight);
     if (unweighted_ >= 0) add(layers, unweighted_ + at, s.pixel, s.unweighted);
