@@ -16,7 +16,6 @@ namespace lacuna {
 /// threshold, t sqrt(n) / sigma, is the case k = n, c = 0 (Veach 1997, 10.4.1). All terms are
 /// divided by sigma, so the result does not depend on brightness. If lights are sampled, and
 /// contributions divided by their sampling probability, this factor of both t and sigma cancels.
-/// contributions divided by the probability of that, t and sigma carry the same factor: it cancels.
 struct TestProbability {
   float k = 0;
   float c = 1;
