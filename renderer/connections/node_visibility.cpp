@@ -15,24 +15,24 @@ constexpr int filter_of_decisions = 1;
 
 }  // namespace
 
-std::vector<double> seen_from(const LightVertices& lights, int s, const NodeView& view) {
+std::vector<double> visible_fractions(const LightVertices& lights, int s, const NodeView& view) {
   const auto on_surface = [&](const V3f& y, const V3f& ng) {
-    return double(view.seen(y, dot(view.point() - y, ng) < 0 ? -ng : ng));
+    return double(view.visible_fraction(y, dot(view.point() - y, ng) < 0 ? -ng : ng));
   };
-  std::vector<double> seen;
+  std::vector<double> visible;
   for (std::size_t i = 0; i < lights.count(s); ++i) {
     if (s > 1) {
       const Surface& y = lights.at(s, i).surface;
-      seen.push_back(on_surface(y.x, y.ng));
+      visible.push_back(on_surface(y.x, y.ng));
     } else if (const EmitterPoint& e = lights.emitter(i); e.infinite()) {
-      seen.push_back(double(view.open(e.x)));
+      visible.push_back(double(view.open(e.x)));
     } else if (e.kind == EmitterPoint::Kind::area) {
-      seen.push_back(on_surface(e.x, e.ng));
+      visible.push_back(on_surface(e.x, e.ng));
     } else {
-      seen.push_back(double(view.seen(e.x)));
+      visible.push_back(double(view.visible_fraction(e.x)));
     }
   }
-  return seen;
+  return visible;
 }
 
 void NodeVisibility::prepare(const PrepareContext& context, std::span<const V3f> nodes,
@@ -60,7 +60,7 @@ std::vector<double> NodeVisibility::between(const IterationContext& context, std
 std::vector<double> NodeVisibility::by_map(const IterationContext& context, std::size_t node,
                                            const LightVertices& lights, int s, Tests& tests) const {
   const NodeView view(*maps_, node, nodes_[node], filter_of_decisions);
-  const std::vector<double> visible = seen_from(lights, s, view);
+  const std::vector<double> visible = visible_fractions(lights, s, view);
   for (std::size_t i = context.iteration % check_every; i < visible.size(); i += check_every) {
     const bool clear = !context.scene.rays().occluded(ray_to(lights, s, i, nodes_[node]));
     ++tests.rays;

@@ -47,6 +47,6 @@ class NodeVisibility {
 };
 
 /// V of all vertices LightVertices::at(s, .), by a node's cube map.
-std::vector<double> seen_from(const LightVertices& lights, int s, const NodeView& view);
+std::vector<double> visible_fractions(const LightVertices& lights, int s, const NodeView& view);
 
 }  // namespace lacuna

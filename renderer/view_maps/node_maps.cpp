@@ -184,7 +184,7 @@ class Comparison {
 
 }  // namespace
 
-float NodeView::seen(const V3f& x, const V3f& n) const {
+float NodeView::visible_fraction(const V3f& x, const V3f& n) const {
   const V3f d = x - point_;
   const float h = d.dot(n);
   if (!(h < 0)) return 0;  // the node lies behind the surface
@@ -193,9 +193,9 @@ float NodeView::seen(const V3f& x, const V3f& n) const {
   return Comparison(*maps_, index_, n, over_h).share(d, filter_);
 }
 
-float NodeView::seen(const V3f& x) const {
+float NodeView::visible_fraction(const V3f& x) const {
   const V3f d = x - point_;
-  return d == V3f(0.0F) ? 1.0F : seen(x, -d.normalized());
+  return d == V3f(0.0F) ? 1.0F : visible_fraction(x, -d.normalized());
 }
 
 float NodeView::open(const V3f& w) const {

@@ -49,9 +49,9 @@ class NodeView {
 
   const V3f& point() const { return point_; }
   /// The visible fraction of the surface around `x` with unit normal `n`, on the side of n.
-  float seen(const V3f& x, const V3f& n) const;
+  float visible_fraction(const V3f& x, const V3f& n) const;
   /// The same for `x` in empty space, with the plane perpendicular to the direction to it.
-  float seen(const V3f& x) const;
+  float visible_fraction(const V3f& x) const;
   /// The fraction of the directions around unit `w` that hit nothing.
   float open(const V3f& w) const;
 

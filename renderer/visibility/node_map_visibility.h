@@ -22,22 +22,22 @@ class NodeMapVisibility : public VisibilityBase {
   std::uint32_t group(const VplGeometry& light) const { return node_of(*lookup_, light); }
   Counters begin(const LightPass& pass);
   struct At {
-    V3f x, n;                 // n on the side of the eye
-    std::vector<float> seen;  // visible fraction, by index in `views_`; negative: not computed yet
+    V3f x, n;                    // n on the side of the eye
+    std::vector<float> visible;  // fraction, by index in `views_`; negative: not computed yet
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
   bool hides(At& at, std::size_t block) const {
     const std::uint32_t view = view_of_[block];
     if (view == no_group) return false;
-    if (at.seen[view] < 0) at.seen[view] = views_[view].seen(at.x, at.n);
-    return at.seen[view] == 0;
+    if (at.visible[view] < 0) at.visible[view] = views_[view].visible_fraction(at.x, at.n);
+    return at.visible[view] == 0;
   }
   /// Requires hides(at, block) == false.
   void decide(const At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const {
     const std::uint32_t view = view_of_[block];
     if (view == no_group) return test_all(terms, d);
     d.tests = 0;
-    d.untested.v.fill(at.seen[view]);
+    d.untested.v.fill(at.visible[view]);
   }
   std::vector<std::pair<std::string, double>> statistics() const;
 

@@ -30,9 +30,10 @@ SkeletonConnectionsSettings seeing_by(NodeVisibilityTest test) {
 }
 
 std::vector<double> by_rays(const Scene& scene, const LightVertices& lights, int s, const V3f& x) {
-  std::vector<double> seen;
-  for (const Ray& ray : rays_to(lights, s, x)) seen.push_back(scene.rays().occluded(ray) ? 0 : 1);
-  return seen;
+  std::vector<double> visible;
+  for (const Ray& ray : rays_to(lights, s, x))
+    visible.push_back(scene.rays().occluded(ray) ? 0 : 1);
+  return visible;
 }
 
 /// A scene, its skeleton and its light vertices.
@@ -120,7 +121,7 @@ TEST_P(NodesSee, AsTheirDistributionsSay) {
       for (int s = 1; s <= scene.lights().longest(); ++s) {
         const std::size_t n = scene.lights().count(s);
         if (n == 0) continue;
-        const auto map = seen_from(scene.lights(), s, view);
+        const auto map = visible_fractions(scene.lights(), s, view);
         const auto ray = by_rays(scene.space.scene(), scene.lights(), s, scene.nodes[node]);
         auto v = node_weights(scene.lights(), s, scene.nodes[node], least, LightSides::facing);
         double sum = 0;

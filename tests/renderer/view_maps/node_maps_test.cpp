@@ -72,11 +72,11 @@ TEST(NodeMaps, OfAnEmptyRoomSeeAllOfIt) {
     const NodeView view(maps, 0, place, filter);
     Moments whole;
     for (const HitPoint& p : points_around(scene, {-0.7F, 1, 2}, 20000)) {
-      const float seen = view.seen(p.x, p.n);
+      const float seen = view.visible_fraction(p.x, p.n);
       EXPECT_GE(seen, 0.2F) << p.x << " filter " << filter;  // in a corner, a quarter of it
       EXPECT_LE(seen, 1.00001F);
       whole.add(seen > 0.9999F ? 1 : 0);
-      EXPECT_EQ(view.seen(p.x, -p.n), 0) << "from behind";
+      EXPECT_EQ(view.visible_fraction(p.x, -p.n), 0) << "from behind";
     }
     EXPECT_GT(statistics::t_test_at_least(whole, 1 - 0.04 * (filter + 1)), 1 - 1e-4)
         << "filter " << filter << ": " << whole.mean() << " +- " << whole.standard_error();
@@ -101,7 +101,7 @@ TEST_P(NodeMapsIn, SeeWhatRaysSee) {
       for (const HitPoint& p : points_around(scene, from, 800)) {
         const bool expected = sees(scene, places[k], p);
         (expected ? seen : unseen) += 1;
-        of_place.add((view.seen(p.x, p.n) > 0.5F) != expected ? 1 : 0);
+        of_place.add((view.visible_fraction(p.x, p.n) > 0.5F) != expected ? 1 : 0);
       }
     }
     wrong.add(of_place.mean());
@@ -126,13 +126,13 @@ TEST(NodeMaps, SeePointsAndTheSkyAsRaysDo) {
   Moments wrong_points, wrong_directions;  // shares of each place
   for (std::size_t k = 0; k < places.size(); ++k) {
     const NodeView view(maps, k, places[k], 1);
-    EXPECT_EQ(view.seen(places[k]), 1) << "the place itself";
+    EXPECT_EQ(view.visible_fraction(places[k]), 1) << "the place itself";
     Moments points, directions;
     for (int i = 0; i < 4000; ++i) {
       const V3f d = V3f(rng.next() - 0.5F, rng.next() - 0.5F, rng.next() - 0.5F).normalized();
       const V3f to = d * (12 * rng.next());
       const bool sees_point = !scene.rays().occluded({places[k], to, 1.0F});
-      points.add((view.seen(places[k] + to) > 0.5F) != sees_point ? 1 : 0);
+      points.add((view.visible_fraction(places[k] + to) > 0.5F) != sees_point ? 1 : 0);
       const bool sees_sky = !scene.rays().occluded({places[k], d});
       directions.add((view.open(d) > 0.5F) != sees_sky ? 1 : 0);
       for (const bool sees : {sees_point, sees_sky}) (sees ? clear : hidden) += 1;

@@ -86,7 +86,7 @@ TEST_P(SkeletonShadows, OfNodeMapsAreThoseOfTheLightsNodes) {
     if (node == no_node) return -1.0;
     const Vertex& v = *at.vertex;
     const V3f n = dot(v.wp, v.surface.ng) < 0 ? -v.surface.ng : v.surface.ng;
-    return double(NodeView(maps, node, nodes[node], 3).seen(v.surface.x, n));
+    return double(NodeView(maps, node, nodes[node], 3).visible_fraction(v.surface.x, n));
   });
 }
 
