@@ -9,7 +9,7 @@
 
 namespace lacuna::gltf {
 
-/// What the components of an accessor may be stored as, by its use.
+/// The component types that an accessor may have, by its use.
 enum class Components {
   floats,      ///< floats only
   quantized,   ///< floats or integers of 8 or 16 bits, as KHR_mesh_quantization allows
@@ -30,7 +30,7 @@ class SparseElements {
                  const std::string& place);
 
   bool empty() const { return count_ == 0; }
-  /// Where the value of element `i` stands among the replaced ones; none: it is not replaced.
+  /// Index of element `i` among the replaced elements; `none` if it is not replaced.
   std::size_t find(std::size_t i) const;
   const unsigned char* values() const { return values_; }
 
@@ -67,7 +67,7 @@ class AccessorView {
   std::uint32_t index(std::size_t i) const { return integer(i, 0); }
 
  private:
-  /// Null where the element is 0 for lack of a bufferView.
+  /// Null if the element is 0: not sparse, in an accessor without a bufferView.
   const unsigned char* element(std::size_t i) const {
     if (!sparse_.empty()) {
       const std::size_t at = sparse_.find(i);

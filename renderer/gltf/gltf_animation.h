@@ -8,9 +8,9 @@
 
 namespace lacuna::gltf {
 
-/// What the animations of a file give its nodes at `seconds`: all of them, or, unless `name` is
-/// empty, those of that name. Where several animate a property of a node, the first one counts,
-/// with a warning. Throws SceneError.
+/// The pose of a file's nodes at `seconds` by all of its animations, or, unless `name` is empty, by
+/// those of that name. If several animate one property of a node, the first is used, with a
+/// warning. Throws SceneError.
 Pose pose_at(const GltfObject& root, const file::Model& model, double seconds,
              const std::string& name, Warnings& warnings);
 

@@ -25,8 +25,8 @@ struct Counts {
   std::uint64_t hidden = 0;  ///< nodes with a mesh and a scale that leaves nothing of it
 };
 
-/// Relative to `origin`. A vertex that is not finite in the file stays so: its triangles are
-/// dropped.
+/// Positions relative to `origin`. A vertex that is not finite in the file stays so: its triangles
+/// are dropped.
 std::vector<V3f> world_positions(const Source& source, const Vertices& vertices,
                                  const std::vector<std::uint32_t>& kept, const V3d& origin) {
   std::vector<V3f> out(kept.size());
@@ -168,7 +168,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   return mesh;
 }
 
-/// How often vertices are moved by morph targets and by joints: four joints for each JOINTS_n.
+/// The number of additions for morph targets and joints: four joints for each JOINTS_n.
 std::size_t moves_of(const file::Model& model, const file::Primitive& primitive,
                      const PlacedNode& node) {
   const std::size_t vertices =
@@ -182,8 +182,8 @@ std::size_t moves_of(const file::Model& model, const file::Primitive& primitive,
   return vertices * (targets - static_cast<std::size_t>(unused) + joints);
 }
 
-/// A file of a few kilobytes can place one mesh a million times: count before anything is built.
-/// Likewise a morph target of some bytes, with an accessor that others have, moves every vertex.
+/// Counts before anything is built: a file of a few kilobytes can place one mesh a million times,
+/// and a morph target of a few bytes, which shares an accessor, can move every vertex.
 void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes) {
   std::size_t total = 0;
   std::size_t moves = 0;

@@ -8,14 +8,14 @@ namespace lacuna::gltf {
 
 enum class AnimatedKind { vector, rotation, weights };
 
-/// A sampler of an animation: values at rising times, and how those between are made.
+/// A sampler of an animation: keys at increasing times, and the interpolation between them.
 class Keyframes {
  public:
-  /// Throws SceneError where the accessors of `sampler` are not those of the `kind`.
+  /// Throws SceneError if the accessors of `sampler` do not fit the `kind`.
   Keyframes(const GltfObject& sampler, const file::Model& model, AnimatedKind kind);
 
-  /// The value at a time; before the first key and after the last one, theirs (glTF 2.0, appendix
-  /// C).
+  /// The value at a time, which is clamped to the times of the first and the last key (glTF 2.0,
+  /// appendix C).
   std::vector<double> at(double seconds) const;
 
  private:
@@ -25,7 +25,7 @@ class Keyframes {
   std::vector<double> part(std::size_t key, Part which) const;
   std::vector<double> slerp(std::size_t key, double u) const;
   std::vector<double> hermite(std::size_t key, double u, double seconds_between) const;
-  /// A rotation of length 1; other values as they are.
+  /// A rotation is normalised; other values do not change.
   std::vector<double> finished(std::vector<double> v) const;
 
   const GltfObject& sampler_;

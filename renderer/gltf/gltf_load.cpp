@@ -28,7 +28,7 @@ void warn_of_unread_parts(const GltfObject& root, const SceneTime& time, Warning
   }
 }
 
-/// What is hashed beside the bytes of the files: those alone for the static pose.
+/// The data that are hashed in addition to the files' bytes; none for the static pose.
 void add_time(const SceneTime& time, Hasher& content) {
   if (!time.seconds) return;
   content.add(std::span<const double>(&*time.seconds, 1));

@@ -10,15 +10,15 @@
 
 namespace lacuna {
 
-/// A moment of the animations of a file.
+/// The time at which the animations of a file are evaluated.
 struct SceneTime {
   std::optional<double> seconds = {};  ///< none: the static pose, without animations
-  std::string animation = {};          ///< the only one that counts; empty: all of them
+  std::string animation = {};          ///< name of the only animation used; empty: all
 };
 
-/// Reads a .gltf or .glb. Everything it names must lie in the file's own folder.
+/// Reads a .gltf or .glb. All files that it refers to must lie in its own folder.
 /// Sets `inputs`, unless it is null, to all files that were read, as SceneFolder::inputs().
-/// Throws SceneError, and InputUnreadable where the reason may pass.
+/// Throws SceneError, and InputUnreadable if the cause may be temporary.
 SceneData load_gltf(const std::filesystem::path& file, std::vector<InputFile>* inputs = nullptr,
                     const SceneTime& time = {});
 

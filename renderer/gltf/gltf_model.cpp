@@ -73,8 +73,8 @@ std::string json_without_fallbacks(const Framing& framing, const GltfObject& roo
   return json.dump();
 }
 
-/// tinygltf never touches the file system: buffers come from the queue, images are left alone. A
-/// data: URI that it does not know it takes for the name of a file.
+/// tinygltf never accesses the file system: buffers come from the queue, images are not decoded. It
+/// takes a data: URI of an unknown kind for the name of a file.
 tinygltf::FsCallbacks callbacks(BufferQueue& queue) {
   tinygltf::FsCallbacks fs{};
   fs.user_data = &queue;
@@ -119,7 +119,7 @@ tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& f
   std::string warning;
   bool parsed = false;
   try {
-    // No base folder: names reach nobody but the callbacks.
+    // No base folder: only the callbacks get the names.
     if (framing.binary && text.empty()) {
       parsed = parser.LoadBinaryFromMemory(&model, &error, &warning, file.data(),
                                            static_cast<unsigned>(file.size()), "");
@@ -130,7 +130,7 @@ tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& f
                                           static_cast<unsigned>(size), "");
     }
   } catch (const std::bad_alloc&) {
-    throw;  // says nothing of the file
+    throw;  // not the fault of the file
   } catch (const std::exception& e) {
     parsed = false;
     error = e.what();

@@ -24,8 +24,8 @@ enum class ElementType { scalar, vec2, vec3, vec4, mat2, mat3, mat4 };
 std::size_t component_bytes(int component);
 std::size_t component_count(ElementType type);
 
-/// The parts of tinygltf's model that are read from, as check_structure() has passed them. Indices
-/// are -1 where the file has none.
+/// The parts of tinygltf's model that are used, of a file that check_structure() has validated. An
+/// index is -1 if the file has none.
 namespace file {
 
 struct BufferView {
@@ -77,12 +77,12 @@ struct Model {
 
 }  // namespace file
 
-/// Lets tinygltf parse a file that check_structure() has passed. External buffers are read through
-/// `folder` and enter `content`; compressed data are decoded. Throws SceneError.
+/// Parses a file that check_structure() has validated, by tinygltf. External buffers are read
+/// through `folder` and enter `content`; compressed data are decoded. Throws SceneError.
 file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,
                        const GltfObject& root, SceneFolder& folder, Hasher& content);
 
-/// Throws SceneError for a data: URI of another kind than tinygltf decodes.
+/// Throws SceneError for a data: URI of a kind that tinygltf does not decode.
 void refuse_data_uri(const GltfObject& place, const std::string& uri);
 
 }  // namespace lacuna::gltf

@@ -55,7 +55,7 @@ LocalTransform local_transform(const GltfObject& node, const NodePose& pose) {
   return {m, turn};
 }
 
-/// The direction of `a`, whatever its length; 0 if it has none.
+/// The unit direction of `a`, of any length; 0 if it has none.
 V3d direction(const V3d& a) {
   const double largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
   return largest > 0 ? (a / largest).normalized() : V3d(0.0);
@@ -64,7 +64,7 @@ V3d direction(const V3d& a) {
 /// See PlacedNode::rank. By the directions of the axes, so that a scale of 1e-8 along one of them
 /// is fine.
 int rank(const M44d& m) {
-  constexpr double cancelled = 1e-12;  // what products of matrices leave of 0
+  constexpr double cancelled = 1e-12;  // rounding error of 0 in products of matrices
   const V3d axes[3] = {direction(row(m, 0)), direction(row(m, 1)), direction(row(m, 2))};
   if (std::abs(axes[0].cross(axes[1]).dot(axes[2])) > cancelled) return 3;
   for (int i = 0; i < 3; ++i) {
@@ -97,7 +97,7 @@ Forest check_forest(const std::vector<GltfObject>& nodes) {
       parents[child] = i;
     }
   }
-  // With one parent each, whatever cannot be reached from a root lies on or below a cycle.
+  // With one parent each, nodes that cannot be reached from a root lie on or below a cycle.
   std::vector<std::size_t> reached;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (parents[i] == none) reached.push_back(i);
@@ -157,7 +157,7 @@ struct Visit {
   std::size_t flat_at = none;  ///< the last ancestor that lowered the rank
 };
 
-/// What a node of a lower rank does to what it carries.
+/// Warns of the meshes, cameras and lights at a node whose transform has a lower rank.
 void warn_of_rank(const GltfObject& node, int rank, const GltfObject& flattening,
                   Warnings& warnings) {
   const std::string place = flattening.label();

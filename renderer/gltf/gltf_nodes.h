@@ -12,10 +12,10 @@ namespace lacuna::gltf {
 struct PlacedNode {
   GltfObject place;
   M44d to_world;  ///< row vectors: p_world = p * to_world; finite
-  /// Dimensions that to_world leaves of space: 3 where it can be inverted; 2 where it flattens
-  /// meshes; 0 where it leaves a line or a point, and so nothing of them.
+  /// Rank of to_world: 3 if it can be inverted; 2 if it flattens meshes into a plane; 0 for rank 1
+  /// or 0, which leaves nothing of them.
   int rank = 3;
-  /// As to_world, with scales of 0 taken as 1: what turns cameras and lights, which have no size.
+  /// to_world with scales of 0 taken as 1: the transform of cameras and lights, which have no size.
   M44d turn;
   bool can_turn = true;             ///< `turn` can be inverted
   bool mirrored = false;            ///< a left-handed `turn`

@@ -25,7 +25,7 @@ std::vector<std::string> tokens(std::string_view pointer) {
   return out;
 }
 
-/// `x`, or the end of the range that it is a hair beyond.
+/// `x`, clamped to the range if it is slightly outside.
 double without_hair(double x, const Limits& allowed) {
   const bool open = allowed.max >= std::numeric_limits<float>::max();
   const double larger_end = std::max(std::abs(allowed.min), open ? 1 : std::abs(allowed.max));

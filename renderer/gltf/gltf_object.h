@@ -18,11 +18,11 @@ inline constexpr Limits unit_interval{0, 1};
 inline constexpr Limits any_float{std::numeric_limits<float>::lowest(),
                                   std::numeric_limits<float>::max()};
 
-/// How far beyond the end of a range a value is taken for that end, relative to the larger end (to
-/// 1 where there is none): numbers are written with few digits, and tools add up their rounding.
+/// Tolerance beyond the ends of a range, within which a value is clamped, relative to the larger
+/// end (to 1 if there is none): files store few digits, and tools accumulate rounding errors.
 inline constexpr double hair = 0.01;
 
-/// Refuses a file for the first problem: throws a SceneError that names the place as
+/// Refuses a file at the first problem: throws a SceneError that names the place as
 /// "nodes[3] "door": rotation[2]", with the name of the innermost object.
 class GltfProblems final : public JsonProblems {
  public:
@@ -38,17 +38,17 @@ class GltfProblems final : public JsonProblems {
   Warnings& warnings_;
 };
 
-/// An object of the JSON, read by its keys. Every read throws a SceneError where the value is not
-/// what is allowed. tinygltf reads wrong types as defaults and truncates integers, so nothing it
-/// parsed leniently is trusted before it was read through here. Numbers a hair outside of their
-/// range are clamped to it with a warning.
+/// An object of the JSON, read by its keys. Every function that reads throws a SceneError if the
+/// value is not allowed. tinygltf reads wrong types as defaults and truncates integers, so all
+/// values are validated here before tinygltf's are used. Numbers slightly outside of their range
+/// are clamped with a warning.
 class GltfObject {
  public:
-  /// The whole of the file. `problems` is about it, and outlives all its objects.
+  /// The root object of the file that `problems` reports on. `problems` must outlive all objects.
   GltfObject(const Json& root, GltfProblems& problems)
       : GltfObject(JsonCursor(root, "", problems), problems) {}
 
-  /// The place and, where there is one, the object's name.
+  /// The place and, if it has one, the object's name.
   std::string label() const { return problems_->place(cursor_.pointer()); }
   bool has(std::string_view key) const;
 
@@ -88,7 +88,7 @@ class GltfObject {
   std::vector<std::string> strings(std::string_view key) const;
   std::vector<std::string> keys() const;
 
-  /// Throws: what stands at `key`, which is there, is not `allowed`.
+  /// Throws: the value at `key`, which must exist, is not what is `allowed`.
   [[noreturn]] void refuse(std::string_view key, const std::string& allowed) const;
   /// Throws with the place in front of `message`.
   [[noreturn]] void fail(const std::string& message) const;
@@ -99,7 +99,7 @@ class GltfObject {
   GltfObject(JsonCursor cursor, GltfProblems& problems);
 
   JsonCursor require(std::string_view key, std::string_view required) const;
-  /// A number, clamped where it is a hair outside of what is allowed.
+  /// A number, clamped if it is slightly outside of what is allowed.
   double read(const JsonCursor& found, std::string_view key, const Limits& allowed) const;
   /// The elements of an array; none if the key is absent.
   std::vector<JsonCursor> elements(std::string_view key) const;

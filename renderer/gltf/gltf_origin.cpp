@@ -12,8 +12,8 @@
 namespace lacuna::gltf {
 namespace {
 
-/// Of the finite vertices that the triangles of a primitive use: in the mesh's coordinates, or in
-/// the world's.
+/// Bounds of the finite vertices that the triangles of a primitive use: in the mesh's coordinates,
+/// or in the world's.
 Bounds posed_bounds(const Source& source, const Vertices& vertices, bool in_world) {
   Bounds box;
   const auto triangles =

@@ -10,7 +10,7 @@
 
 namespace lacuna::gltf {
 
-/// What an animation gives a node in place of what the file says of it; none: it gives nothing.
+/// The properties of a node that an animation replaces; none: not animated.
 struct NodePose {
   std::optional<std::array<double, 3>> translation, scale;
   std::optional<std::array<double, 4>> rotation;  ///< x, y, z, w; of length 1

@@ -16,8 +16,8 @@ inline bool is_drawn(const file::Primitive& primitive) {
   return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
 }
 
-/// The index of a node's mesh; none if it has no mesh, or its scale leaves nothing of it. A skin
-/// places a mesh by its joints alone.
+/// The index of a node's mesh; none if it has no mesh, or if its scale leaves nothing of it. A
+/// skinned mesh is placed by its joints, whatever the scale of its node.
 inline std::optional<std::size_t> mesh_of(const file::Model& model, const PlacedNode& node) {
   if (node.rank < 2 && !node.skin) return std::nullopt;
   return node.place.index("mesh", model.meshes.size(), "meshes");
@@ -57,11 +57,11 @@ struct Source {
     }
     return out;
   }
-  /// Whether joints place the vertices, and not the node.
+  /// Whether joints place the vertices, instead of the node.
   bool skinned() const {
     return node.skin && attribute("JOINTS_0") >= 0 && attribute("WEIGHTS_0") >= 0;
   }
-  /// Whether nothing is left of it under a node of scale 0.
+  /// Whether the scale of its node leaves nothing of it.
   bool hidden() const { return node.rank < 2 && !skinned(); }
 };
 

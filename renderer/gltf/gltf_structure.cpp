@@ -51,8 +51,7 @@ void check_asset(const GltfObject& root) {
   }
 }
 
-/// Refuses what is only there in the form of an extension that is not supported, without the
-/// fallback that glTF itself reads.
+/// Refuses data that exist only as an unsupported extension, without the fallback of core glTF.
 void refuse_compressed(const GltfObject& place) {
   const auto extensions = place.object("extensions");
   if (!extensions) return;
@@ -211,7 +210,7 @@ void check_attributes(const GltfObject& attributes, const Sizes& sizes) {
   }
 }
 
-/// An accessor without a bufferView means zeros; of indices the library takes none.
+/// An accessor without a bufferView means zeros; tinygltf does not accept that for indices.
 void check_data(const GltfObject& primitive, const std::vector<GltfObject>& accessors) {
   const auto lacks_data = [&](const std::optional<std::size_t>& accessor) {
     return accessor && !accessors[*accessor].has("bufferView");
@@ -246,9 +245,8 @@ void check_meshes(const GltfObject& root, const Sizes& sizes) {
   }
 }
 
-/// The fourth row of a product of inverses is 0 0 0 1 but for rounding. What it does to a point is
-/// to divide by 1 + w, where w is the row times the point: it is compared with the lengths of the
-/// axes.
+/// The fourth row of a product of inverses is 0 0 0 1 except for rounding. It would divide a point
+/// by 1 + w, with w the row times the point: so it is compared with the lengths of the axes.
 void check_fourth_row(const GltfObject& node, const std::array<double, 16>& m) {
   constexpr double rounding = 1e-5;  // of floats, in a product of some
   if (m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return;

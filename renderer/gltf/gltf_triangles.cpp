@@ -89,7 +89,7 @@ bool is_degenerate(const V3f& a, const V3f& b, const V3f& c) {
   std::array<double, 3> lengths{ab.length(), bc.length(), ca.length()};
   std::sort(lengths.begin(), lengths.end());
   // The sine of the largest angle, between the two shorter edges, against a few units of the last
-  // place of a float. A needle with one tiny edge but an honest angle there stays.
+  // place of a float. A triangle with one tiny edge, but large angles at it, is not degenerate.
   constexpr double flat = 0x1p-22;
   return !(twice_area > flat * lengths[0] * lengths[1]) ||
          twice_area < std::numeric_limits<float>::min();

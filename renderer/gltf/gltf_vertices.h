@@ -24,16 +24,16 @@ class MorphTargets {
   std::vector<Target> targets_;
 };
 
-/// How the joints of a skin carry the vertices of a primitive.
+/// The transforms of a primitive's vertices by the joints of a skin.
 class SkinWeights {
  public:
   /// `source` is skinned. Throws SceneError if the skin lacks a joint.
   explicit SkinWeights(const Source& source);
 
-  /// The mean of the joints' transforms with the weights of vertex `i`; the first joint's for a
-  /// vertex without weights; not finite where the weights are not.
+  /// The mean of the joints' transforms with the weights of vertex `i`; that of the first joint if
+  /// the vertex has no weights; not finite if the weights are not.
   M44d to_world(std::size_t i) const;
-  /// Whether most vertices are turned inside out.
+  /// Whether the transforms of most vertices are left-handed.
   bool mirrored() const { return 2 * mirrored_ > vertices_; }
   std::size_t without_weights() const { return without_weights_; }
 
@@ -55,16 +55,16 @@ class Vertices {
   std::size_t size() const { return positions_.size(); }
   /// In the mesh's coordinates.
   V3d local(std::size_t i) const;
-  /// Whether what the file says of its place is finite: its position, displacements and weights.
+  /// Whether the position, the displacements and the weights of vertex `i` are finite.
   bool finite(std::size_t i) const;
   /// In the coordinates of the world.
   V3d world(std::size_t i) const;
   /// Of unit length; 0 if it has no direction. The primitive has NORMAL.
   V3f world_normal(std::size_t i) const;
 
-  /// Whether the winding of the triangles is turned over.
+  /// Whether the winding of the triangles is reversed.
   bool mirrored() const;
-  /// Whether world() is one transform of what the file has, the same for all vertices.
+  /// Whether world() applies one transform to all vertices of the file.
   bool rigid() const { return !skin_ && position_targets_.empty(); }
   const SkinWeights* skin() const { return skin_ ? &*skin_ : nullptr; }
 

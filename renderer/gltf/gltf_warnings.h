@@ -9,7 +9,7 @@
 
 namespace lacuna::gltf {
 
-/// Warnings about what was left out of a scene or read as something else, each message once.
+/// Warnings about the parts of a scene that were left out or changed, each message once.
 class Warnings {
  public:
   void once(const std::string& message) {

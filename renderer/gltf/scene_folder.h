@@ -12,7 +12,7 @@ namespace lacuna {
 using Bytes = InputBytes;
 
 /// Reads all files of a scene: only regular files inside the scene's own folder, and at most 2 GiB
-/// in total. All functions throw InputUnreadable where the reason may pass.
+/// in total. All functions throw InputUnreadable if the cause may be temporary.
 class SceneFolder {
  public:
   /// The folder of `main_file`. Throws SceneError if there is none.
