@@ -37,10 +37,10 @@ class GatheredLight {
   /// its parts: its later contributions are multiplied by their number.
   void record(std::vector<TrainingSample>& samples) const {
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
-      Rgb behind(0, 0, 0);
+      Rgb later(0, 0, 0);
       for (int depth = last_[i]; depth >= std::max(1, first_[i]); --depth) {
-        record(i, depth, behind, samples);
-        behind += light_[index(i, depth)] * split_[index(i, depth)];
+        record(i, depth, later, samples);
+        later += light_[index(i, depth)] * split_[index(i, depth)];
       }
     }
   }
@@ -50,19 +50,19 @@ class GatheredLight {
     return i * batch_.stride + static_cast<std::size_t>(depth);
   }
 
-  /// Appends the sample of vertex `depth` of path `i`. `behind`: contributions of later vertices.
-  void record(std::size_t i, int depth, const Rgb& behind,
+  /// Appends the sample of vertex `depth` of path `i`. `later`: contributions of later vertices.
+  void record(std::size_t i, int depth, const Rgb& later,
               std::vector<TrainingSample>& samples) const {
     const Vertex& v = batch_.vertex(i, depth);
     if (v.kind != Vertex::Kind::surface || !v.bsdf || !v.bsdf->connectible()) return;
     const float carried = luminance(v.throughput) * split_[index(i, depth)];
     TrainingSample s{.cell = v.guiding_cell, .x = v.surface.x, .n = v.side()};
-    s.reflected = luminance(behind) / carried;
+    s.reflected = luminance(later) / carried;
     if (depth < last_[i] && !v.delta) record_edge(v, batch_.vertex(i, depth + 1), s);
     if (s.pdf > 0) {
       const Rgb next = batch_.vertex(i, depth + 1).throughput * split_[index(i, depth + 1)];
       s.radiance =
-          luminance(Rgb(over(behind.x, next.x), over(behind.y, next.y), over(behind.z, next.z)));
+          luminance(Rgb(over(later.x, next.x), over(later.y, next.y), over(later.z, next.z)));
     }
     if (std::isfinite(s.reflected) && std::isfinite(s.radiance)) samples.push_back(s);
   }

@@ -39,9 +39,9 @@ class GuidingDistribution {
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
 
   /// The cell of the distribution at surface `s`, on the side of unit `w`. Its probability is 1, or
-  /// less where the distribution covers only a part of the light, or 0 where it has no directions.
+  /// less if the distribution covers only a part of the light, or 0 if it has no directions.
   virtual GuidingCell cell(const Surface& s, const V3f& w) const = 0;
-  /// Prefetches what cell() of the same arguments reads first.
+  /// Prefetches the first data that cell() reads with the same arguments.
   virtual void prefetch(const Surface&, const V3f&) const {}
   /// Samples a unit direction by the uniform point `u`, and by `rng` if more numbers are needed;
   /// none if the sample fails. Requires a cell whose probability is above 0. The direction should

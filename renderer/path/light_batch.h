@@ -167,7 +167,7 @@ class LightBatch {
     std::uint16_t s;
   };
   /// Connects vertex `index` in [0, length(i)) of path `i` to the eye (t = 1) and calls `use(ray,
-  /// splat)` where the unoccluded contribution is not black.
+  /// splat)` if the unoccluded contribution is not black.
   template <class Use>
   void connect_to_eye(std::size_t i, int index, Use&& use) const {
     if (index == 0) {

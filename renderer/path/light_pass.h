@@ -8,7 +8,7 @@ namespace lacuna {
 /// Number of light paths that one part of a light pass traces: few enough to stop quickly.
 inline constexpr std::int64_t paths_of_part = 16 * 64;
 
-/// The number of light paths of an iteration: `wanted`, or one for each pixel where that is 0.
+/// The number of light paths of an iteration: `wanted`, or one for each pixel if that is 0.
 inline std::int64_t light_paths(int wanted, const Image& image) {
   return wanted > 0 ? wanted : std::int64_t{image.width} * image.height;
 }

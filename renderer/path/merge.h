@@ -42,7 +42,7 @@ inline bool on_one_surface(const V3f& ng, const Photon& p) {
 /// SurfaceEndpoint::scatter() has times the cosine. Over pi r^2 and the number of light paths it
 /// estimates the radiance that the path carries (Georgiev et al. 2012, eq. 7; Noel 2015, 4.5).
 /// The cosine is the photon's, because the probability that a photon arrives falls with it: the
-/// quotient stays bounded where the eye vertex lies on another triangle. Black at grazing
+/// quotient stays bounded if the eye vertex lies on another triangle. Black at grazing
 /// incidence, where the cosine is a rounding error.
 inline Rgb merged(const SurfaceEndpoint& eye, const Photon& p) {
   const float cosine = abs_dot(p.ng, p.wp);

@@ -2,12 +2,13 @@
 
 namespace lacuna {
 
-// Multiple importance sampling over all ways (s, t) to make one path x_0 ... x_k, x_0 on the
-// emitter and x_k at the eye: its first s vertices walked from the light, the other t = k + 1 - s
-// from the eye, and x_{s-1}, x_s connected. Balance heuristic with the number of samples of each
-// strategy (Veach 1997, 9.2.2; Noel 2015, 4.3, 11.5). p_i / p_s is a product of ratios of the two
-// densities of each vertex between, so the sum over i < s follows from what a walk from the light
-// carries along, and the sum over i > s from what a walk from the eye does (van Antwerpen 2011):
+// Multiple importance sampling over all strategies (s, t) that sample one path x_0 ... x_k, with
+// x_0 on the emitter and x_k at the eye: the first s vertices are sampled from the light, the other
+// t = k + 1 - s from the eye, and x_{s-1} and x_s are connected. Balance heuristic with the number
+// of samples of each strategy (Veach 1997, 9.2.2; Noel 2015, 4.3, 11.5). p_i / p_s is a product of
+// ratios, over the vertices between, of the densities from the two ends. So the sum over i < s
+// follows from a quantity that the walk from the light accumulates, and the sum over i > s from one
+// of the walk from the eye (van Antwerpen 2011):
 //
 //   sum_{i <= j} n_i p_i / p_{j+1} = (g_j / p_j) (n_j c_j + sum_{i < j} n_i p_i / p_j)
 //
@@ -69,7 +70,7 @@ constexpr TechniqueCounts eye_side(const SampleCounts& n) {
 }
 
 /// n_j c_j + sum_{i < j} n_i p_i / p_j at vertex `j` of a walk: `connectible` is c_j, `pdf_rev` the
-/// density, per steradian, with which the other end's walk goes on from j to j - 1, and
+/// density, per steradian, with which the other end's walk continues from j to j - 1, and
 /// `mis_partial` the part of the sum that the walk carried to j (PathState).
 constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connectible,
                                  double pdf_rev, double mis_partial) {
@@ -89,7 +90,7 @@ constexpr double mis_weight(double own, double light, double eye) {
   return own / (own + light + eye);
 }
 
-/// The power heuristic with exponent 2 (Veach 1997, 9.2.4) where two techniques make a path:
+/// The power heuristic with exponent 2 (Veach 1997, 9.2.4) if two techniques sample a path:
 /// `balance` is the weight of one by the balance heuristic, in [0, 1]; the other's is 1 - balance.
 /// Compared with the balance heuristic, the technique with the smaller weight adds less noise. With
 /// the many techniques of bidirectional paths the balance heuristic measured better.

@@ -23,7 +23,7 @@ struct RouletteState {
   float expected = -1;
   float least = 0;  ///< luminance of throughput below which the path is not split
   float split = 1;  ///< number of equal parts it was split into since it started or branched off
-  /// The window decided at the last vertex: goes_on() does not.
+  /// The window decided at the last vertex: survives() does not.
   bool windowed = false;
 };
 

@@ -43,13 +43,13 @@ class Roulette {
     if (guiding_weight <= high && w.depth < limits_.depth) return 1;
     if (state.expected < 0) {
       const Vertex& first = w.path[static_cast<std::size_t>(state.reference)];
-      state.expected = state.least / least_part * expected_behind(first);
+      state.expected = state.least / least_part * expected_after(first);
     }
     if (!(state.expected > 0)) return 1;
-    const float ratio = carried * expected_behind(v) / state.expected;
+    const float ratio = carried * expected_after(v) / state.expected;
     state.windowed = true;
     if (ratio < low && w.depth >= limits_.depth) {
-      return survive(w, std::max(ratio / low, min_survival)) ? 1 : 0;
+      return apply(w, std::max(ratio / low, min_survival)) ? 1 : 0;
     }
     // Splitting undoes at most the factor of guiding: splitting all paths that reach bright regions
     // costs more time than the lower variance saves.
@@ -60,7 +60,7 @@ class Roulette {
 
   /// Roulette by the throughput, after the next direction is sampled, unless parts() has decided by
   /// the window. False: the path ends.
-  bool goes_on(PathState& w) const {
+  bool survives(PathState& w) const {
     if (w.depth < limits_.depth || w.roulette.windowed) return true;
     const float survival =
         std::min(1.0F, w.roulette.carried_before * max_component(w.throughput) * w.roulette.scale);
@@ -77,7 +77,8 @@ class Roulette {
   // that may be split therefore bounds their number, and the time that wrong estimates cost.
   static constexpr float least_part = 1.0F / 64;
 
-  static bool survive(PathState& w, float survival) {
+  /// Roulette with probability `survival`. False: the path ends.
+  static bool apply(PathState& w, float survival) {
     if (!w.rng.decide(survival)) return false;
     w.throughput /= survival;
     w.roulette.scale *= survival;
@@ -86,7 +87,7 @@ class Roulette {
 
   /// Guide::expected() of `v`. Light paths, and eye paths while it is unknown, use 1: as if it were
   /// equal everywhere.
-  float expected_behind(const Vertex& v) const {
+  float expected_after(const Vertex& v) const {
     const float known = limits_.transport == Transport::radiance ? guide_.expected(v) : -1;
     return known < 0 ? 1 : known;
   }

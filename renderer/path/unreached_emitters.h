@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// Warns where `paths` light paths, those of all iterations together, are too few to reach the
-/// emitters that light what the camera sees.
+/// Warns if `paths` light paths, of all iterations together, are too few to reach the emitters that
+/// light the visible surfaces.
 ///
 /// At a point, emitter i gives c_i of the direct light; light paths start on it with probability
 /// p_i. An estimate of the sum of all c_i by one path is c_i / p_i, and the relative variance of N

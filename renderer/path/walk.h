@@ -177,7 +177,7 @@ class Walk {
     guide_.on_hit(v);
   }
 
-  /// False where the walk ends before a direction is sampled. May split the path.
+  /// False if the walk ends before a direction is sampled. May split the path.
   bool continues(PathState& w, std::size_t walk) {
     const Vertex& v = vertex(w, w.depth);
     if (v.kind == Vertex::Kind::background || w.depth == limits_.max_depth) return false;
@@ -203,7 +203,7 @@ class Walk {
     w.roulette.split *= static_cast<float>(parts);
   }
 
-  /// Samples the next edge; false where the walk ends.
+  /// Samples the next edge; false if the walk ends.
   bool sample_next(PathState& w) {
     const int depth = w.depth;
     Vertex& v = vertex(w, depth);
@@ -212,7 +212,7 @@ class Walk {
     if (!next) return false;
     w.throughput *= next->weight;
     w.roulette.scale *= next->pdf_ratio;
-    if (!roulette_.goes_on(w)) return false;
+    if (!roulette_.survives(w)) return false;
     v.delta = next->delta;
     // The delta functions cancel in all ratios of densities: both walks use density 1 instead.
     w.p = next->delta ? Pdf<SolidAngle>(1.0F) : next->pdf;
