@@ -19,15 +19,13 @@ constexpr int chunks = 64;  // of triangles, for any number of threads
 /// Calls `use(axis, first, count)` for the lines of cells that the triangles of a chunk intersect.
 template <class Use>
 void for_each_line(const TriangleSoup& soup, const OctreeCube& cube, int chunk, Use&& use) {
-  const std::size_t n = soup.triangles.size();
-  const auto part = [&](int c) { return n * static_cast<std::size_t>(c) / chunks; };
+  const std::uint64_t n = soup.size();
+  const auto part = [&](int c) { return n * static_cast<std::uint64_t>(c) / chunks; };
   const GridTransform cells{cube.corner, cube.side / (1 << cube.levels)};
   const CellBox all{Imath::V3i(0), Imath::V3i(1 << cube.levels)};
-  for (std::size_t t = part(chunk); t < part(chunk + 1); ++t) {
-    std::array<Imath::V3d, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = cells.to_grid(Imath::V3d(soup.positions[soup.triangles[t][k]]));
-    }
+  for (std::uint64_t t = part(chunk); t < part(chunk + 1); ++t) {
+    std::array<Imath::V3d, 3> corners = soup.corners(t);
+    for (Imath::V3d& corner : corners) corner = cells.to_grid(corner);
     TriangleBox(corners).for_each_line(all, use);
   }
 }
@@ -37,15 +35,19 @@ void for_each_line(const TriangleSoup& soup, const OctreeCube& cube, int chunk, 
 OctreeCube octree_cube(const TriangleSoup& soup, double levels) {
   Imath::V3d low(std::numeric_limits<double>::infinity());
   Imath::V3d high(-std::numeric_limits<double>::infinity());
-  for (const auto& t : soup.triangles) {
-    for (const std::uint32_t i : t) {
-      for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], double(soup.positions[i][a]));
-        high[a] = std::max(high[a], double(soup.positions[i][a]));
-      }
+  const auto add = [&](const Imath::V3d& p) {
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], p[a]);
+      high[a] = std::max(high[a], p[a]);
     }
+  };
+  for (const auto& t : soup.triangles) {
+    for (const std::uint32_t i : t) add(Imath::V3d(soup.positions[i]));
   }
-  if (soup.triangles.empty()) low = Imath::V3d(0.0), high = Imath::V3d(1.0);
+  for (const auto& placement : soup.placements) {
+    for (const auto& p : soup.prototypes[placement.prototype].positions) add(placement.point(p));
+  }
+  if (soup.size() == 0) low = Imath::V3d(0.0), high = Imath::V3d(1.0);
   return octree_cube(low, high, levels);
 }
 

@@ -14,7 +14,8 @@
 #include "analysis/space/triangle_box.h"
 
 // Triangles are first sorted into tiles of voxels, a large one into each tile that it intersects;
-// then each thread fills one tile at a time, which no other thread writes.
+// then each thread fills one tile at a time, which no other thread writes. A scene of many
+// instances is taken in batches, so that the lists stay small.
 
 namespace lacuna {
 
@@ -22,7 +23,8 @@ namespace {
 
 constexpr int tile_side = 32;  // voxels: whole blocks of a BitGrid3
 static_assert(tile_side % BitBlock::side == 0);
-constexpr int max_chunks = 32;  // of triangles, for sorting
+constexpr int max_chunks = 32;                               // of triangles, for sorting
+constexpr std::uint64_t max_batch = std::uint64_t{1} << 24;  // triangles: lists of some 128 MiB
 
 /// Pool threads treat denormal floats as 0; a voxel must be far larger.
 constexpr double least_extent = 1e-25;
@@ -51,16 +53,21 @@ struct Bounds {
 
 Bounds bounds_of(const TriangleSoup& soup) {
   Bounds b;
+  const auto add = [&b](const Imath::V3d& p, std::size_t i) {
+    for (int a = 0; a < 3; ++a) {
+      if (!std::isfinite(p[a]))
+        throw GeometryError(
+            fmt::format("position {} has coordinate {}: it must be finite", i, p[a]));
+      b.low[a] = std::min(b.low[a], p[a]);
+      b.high[a] = std::max(b.high[a], p[a]);
+    }
+  };
   for (const auto& t : soup.triangles)
-    for (const std::uint32_t i : t)
-      for (int a = 0; a < 3; ++a) {
-        const double x = soup.positions[i][a];
-        if (!std::isfinite(x))
-          throw GeometryError(
-              fmt::format("position {} has coordinate {}: it must be finite", i, x));
-        b.low[a] = std::min(b.low[a], x);
-        b.high[a] = std::max(b.high[a], x);
-      }
+    for (const std::uint32_t i : t) add(Imath::V3d(soup.positions[i]), i);
+  for (const auto& placement : soup.placements) {
+    const auto& positions = soup.prototypes[placement.prototype].positions;
+    for (std::size_t i = 0; i < positions.size(); ++i) add(placement.point(positions[i]), i);
+  }
   return b;
 }
 
@@ -70,12 +77,18 @@ struct TileLists {
   std::vector<std::uint32_t> list;
 };
 
+/// Fills in a batch of triangles, [begin, end) of the soup.
 class Voxelizer {
  public:
-  Voxelizer(const TriangleSoup& soup, const GridPlan& plan, const ThreadPool& pool)
-      : soup_(soup), plan_(plan), pool_(pool), tiles_(tiles_of(plan.size)) {
-    const std::uint64_t n = soup.triangles.size();
-    chunks_ = static_cast<int>(std::min<std::uint64_t>({n, max_chunks, 4u * pool.threads()}));
+  Voxelizer(const TriangleSoup& soup, const GridPlan& plan, const ThreadPool& pool,
+            std::uint64_t begin, std::uint64_t end)
+      : soup_(soup),
+        plan_(plan),
+        pool_(pool),
+        tiles_(tiles_of(plan.size)),
+        begin_(begin),
+        count_(end - begin) {
+    chunks_ = static_cast<int>(std::min<std::uint64_t>({count_, max_chunks, 4u * pool.threads()}));
   }
 
   TileLists sort_into_tiles(std::uint64_t byte_limit) const;
@@ -87,11 +100,9 @@ class Voxelizer {
   }
 
  private:
-  std::array<Imath::V3d, 3> corners(std::size_t triangle, double cell) const {
-    std::array<Imath::V3d, 3> c;
-    for (std::size_t k = 0; k < 3; ++k)
-      c[k] =
-          plan_.transform.to_grid(Imath::V3d(soup_.positions[soup_.triangles[triangle][k]])) / cell;
+  std::array<Imath::V3d, 3> corners(std::uint64_t of_batch, double cell) const {
+    std::array<Imath::V3d, 3> c = soup_.corners(begin_ + of_batch);
+    for (Imath::V3d& corner : c) corner = plan_.transform.to_grid(corner) / cell;
     return c;
   }
   template <class Visit>
@@ -101,15 +112,16 @@ class Voxelizer {
   const GridPlan& plan_;
   const ThreadPool& pool_;
   Imath::V3i tiles_;
+  std::uint64_t begin_, count_;
   int chunks_;
 };
 
 /// Calls visit(tile, triangle) for the triangles of a chunk and the tiles that each intersects.
 template <class Visit>
 void Voxelizer::for_each_tile(int chunk, Visit&& visit) const {
-  const std::uint64_t n = soup_.triangles.size(), count = static_cast<std::uint64_t>(chunks_);
-  const std::uint64_t begin = n * static_cast<std::uint64_t>(chunk) / count,
-                      end = n * (static_cast<std::uint64_t>(chunk) + 1) / count;
+  const auto chunks = static_cast<std::uint64_t>(chunks_);
+  const std::uint64_t begin = count_ * static_cast<std::uint64_t>(chunk) / chunks,
+                      end = count_ * (static_cast<std::uint64_t>(chunk) + 1) / chunks;
   for (std::uint64_t t = begin; t < end; ++t)
     TriangleBox(corners(t, tile_side))
         .for_each_line({Imath::V3i(0), tiles_}, [&](int axis, Imath::V3i tile, int length) {
@@ -169,10 +181,7 @@ GridPlan plan_grid(const TriangleSoup& soup, int resolution) {
   if (resolution < 1 || resolution > max_resolution)
     throw std::invalid_argument(
         fmt::format("resolution {}: 1 to {} are allowed", resolution, max_resolution));
-  if (soup.triangles.empty()) throw GeometryError("the scene has no triangles, so it has no grid");
-  if (soup.triangles.size() > std::numeric_limits<std::uint32_t>::max())
-    throw GeometryError(
-        fmt::format("{} triangles: up to 2^32 - 1 are allowed", soup.triangles.size()));
+  if (soup.size() == 0) throw GeometryError("the scene has no triangles, so it has no grid");
   const Bounds bounds = bounds_of(soup);
   const Imath::V3d extent = bounds.high - bounds.low;
   const double longest = std::max({extent.x, extent.y, extent.z});
@@ -191,7 +200,7 @@ GridPlan plan_grid(const TriangleSoup& soup, int resolution) {
       plan.size[a] = std::clamp(static_cast<int>(voxels), 1, resolution);
     }
   }
-  plan.bytes = grid_bytes(plan.size) + list_bytes(plan.size, 2 * soup.triangles.size());
+  plan.bytes = grid_bytes(plan.size) + list_bytes(plan.size, 2 * std::min(soup.size(), max_batch));
   return plan;
 }
 
@@ -199,11 +208,13 @@ Voxels voxelize(const TriangleSoup& soup, int resolution, const ThreadPool& pool
                 std::uint64_t byte_limit) {
   const GridPlan plan = plan_grid(soup, resolution);
   require_memory("voxelising", plan.size, plan.bytes, byte_limit);
-  const Voxelizer voxelizer(soup, plan, pool);
-  const TileLists lists = voxelizer.sort_into_tiles(byte_limit);
   Voxels voxels{plan.transform, BitGrid3(plan.size)};
-  run_parallel(pool, voxelizer.tile_count(),
-               [&](int tile) { voxelizer.fill_tile(lists, tile, voxels.scene); });
+  for (std::uint64_t begin = 0; begin < soup.size(); begin += max_batch) {
+    const Voxelizer voxelizer(soup, plan, pool, begin, std::min(soup.size(), begin + max_batch));
+    const TileLists lists = voxelizer.sort_into_tiles(byte_limit);
+    run_parallel(pool, voxelizer.tile_count(),
+                 [&](int tile) { voxelizer.fill_tile(lists, tile, voxels.scene); });
+  }
   return voxels;
 }
 

@@ -23,6 +23,20 @@ class Document {
 
   void add(const OverlayMesh& mesh, float alpha) {
     if (mesh.triangles.empty()) return;
+    add_node({{"name", mesh.name}, {"mesh", add_mesh(mesh, alpha)}});
+  }
+  void place(std::size_t mesh, const TriangleSoup::Placement& placement) {
+    OrderedJson matrix = OrderedJson::array();
+    const auto push = [&matrix](const V3f& column, int last) {
+      for (int k = 0; k < 3; ++k) matrix.push_back(column[k]);
+      matrix.push_back(last);
+    };
+    for (const V3f& axis : placement.axes) push(axis, 0);
+    push(placement.at, 1);
+    add_node({{"mesh", mesh}, {"matrix", matrix}});
+  }
+  /// Returns its index.
+  std::size_t add_mesh(const OverlayMesh& mesh, float alpha) {
     V3f low = mesh.positions[0], high = low;
     for (const V3f& p : mesh.positions) {
       for (int a = 0; a < 3; ++a) {
@@ -53,7 +67,7 @@ class Document {
                                 {{{"attributes", {{"POSITION", positions}}},
                                   {"indices", indices},
                                   {"material", json_["materials"].size() - 1}}}}});
-    add_node({{"name", mesh.name}, {"mesh", json_["meshes"].size() - 1}});
+    return json_["meshes"].size() - 1;
   }
 
   void add(const CameraData& camera) {
@@ -111,6 +125,14 @@ void write_overlay(const std::filesystem::path& file, const SceneData& scene,
   constexpr float grey = 0.6F, see_through = 0.25F;
   document.add({"scene", Rgb(grey), std::move(soup.positions), std::move(soup.triangles)},
                see_through);
+  std::vector<std::size_t> prototypes;
+  for (auto& p : soup.prototypes) {
+    prototypes.push_back(document.add_mesh(
+        {"scene", Rgb(grey), std::move(p.positions), std::move(p.triangles)}, see_through));
+  }
+  for (const auto& placement : soup.placements) {
+    document.place(prototypes[placement.prototype], placement);
+  }
   for (const OverlayMesh& mesh : overlay) document.add(mesh, 1);
   for (const CameraData& camera : scene.cameras) document.add(camera);
   write_file_atomically(file, document.glb());

@@ -65,6 +65,8 @@ OrderedJson scene(const Scene& s, const std::string& camera) {
   return {
       {"camera", camera},
       {"triangles", d.triangle_count()},
+      {"stored_triangles", d.stored_triangles()},  // those of instances once
+      {"instances", d.instances.size()},
       {"dropped_triangles", d.dropped_triangles},
       {"emitters", s.has_emitters() ? OrderedJson(s.emitters().size()) : OrderedJson("not needed")},
       {"textures",

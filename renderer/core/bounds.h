@@ -11,11 +11,30 @@ struct Bounds {
   V3d low{std::numeric_limits<double>::infinity()};
   V3d high{-std::numeric_limits<double>::infinity()};
 
-  void add(const V3f& p) {
+  void add(const V3d& p) {
     for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], double(p[k]));
-      high[k] = std::max(high[k], double(p[k]));
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
     }
+  }
+  void add(const V3f& p) { add(V3d(p)); }
+  void add(const Bounds& other) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], other.low[k]);
+      high[k] = std::max(high[k], other.high[k]);
+    }
+  }
+  bool empty() const { return !(low.x <= high.x); }
+  /// The box around the eight corners, each moved by `move`.
+  template <class Move>
+  Bounds with_corners_moved(Move&& move) const {
+    Bounds box;
+    for (int corner = 0; corner < 8; ++corner) {
+      V3d p;
+      for (int k = 0; k < 3; ++k) p[k] = ((corner >> k) & 1) != 0 ? high[k] : low[k];
+      box.add(V3d(move(p)));
+    }
+    return box;
   }
   V3d size() const { return high - low; }
   /// Half the diagonal.

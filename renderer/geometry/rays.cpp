@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstring>
 #include <new>
 
@@ -69,6 +70,8 @@ void mask_filter(const RTCFilterFunctionNArguments* args) {
 struct RayCaster::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  const SceneData* data = nullptr;
+  std::uint32_t first_instance = 0;  // Embree's geometries: the placed meshes, then the instances
   std::vector<std::unique_ptr<AlphaMask>> masks;
   std::atomic<std::int64_t> bytes{0};
   std::string last_error;  // Embree's text
@@ -96,8 +99,8 @@ struct RayCaster::Impl {
         fmt::format("Embree failed while {}: error {} ({})", doing, int(e), last_error));
   }
 
-  void add(const SceneData& data, std::size_t index) {
-    const Mesh& mesh = data.meshes[index];
+  /// Adds a mesh to `to`, the scene or a prototype, as geometry `id`.
+  void add(RTCScene to, const Mesh& mesh, std::size_t id) {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     static_assert(sizeof(V3f) == 12 && sizeof(mesh.triangles[0]) == 12);
     void* positions = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -112,15 +115,71 @@ struct RayCaster::Impl {
     std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<V3f*>(positions));
     std::memcpy(triangles, mesh.triangles.data(),
                 sizeof(mesh.triangles[0]) * mesh.triangles.size());
-    if (AlphaMask::needed(data, mesh)) {
-      masks.push_back(std::make_unique<AlphaMask>(data, mesh));
+    if (AlphaMask::needed(*data, mesh)) {
+      masks.push_back(std::make_unique<AlphaMask>(*data, mesh));
       rtcSetGeometryUserData(g, masks.back().get());
       rtcSetGeometryIntersectFilterFunction(g, mask_filter);
       rtcSetGeometryOccludedFilterFunction(g, mask_filter);
     }
     rtcCommitGeometry(g);
-    rtcAttachGeometryByID(scene, g, static_cast<unsigned>(index));
+    rtcAttachGeometryByID(to, g, static_cast<unsigned>(id));
     rtcReleaseGeometry(g);
+  }
+
+  RTCScene new_scene() const {
+    RTCScene s = rtcNewScene(device);
+    rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
+    return s;
+  }
+
+  void build(RTCScene s, const ThreadPool& pool) const {
+    rtcSetSceneProgressMonitorFunction(
+        s, [](void* user, double) { return !static_cast<const ThreadPool*>(user)->stopped(); },
+        const_cast<ThreadPool*>(&pool));
+    rtcCommitScene(s);
+    rtcSetSceneProgressMonitorFunction(s, nullptr, nullptr);
+    pool.check_stop();
+    check("building its acceleration structure");
+  }
+
+  /// Builds each prototype and places it; Embree's instances keep it alive.
+  void add_instances(const ThreadPool& pool) {
+    std::vector<RTCScene> built;
+    struct Release {
+      std::vector<RTCScene>& scenes;
+      ~Release() {
+        for (RTCScene s : scenes) rtcReleaseScene(s);
+      }
+    } const release{built};
+    for (const Prototype& prototype : data->prototypes) {
+      RTCScene s = built.emplace_back(new_scene());
+      std::size_t id = 0;
+      for (const Mesh& mesh : data->meshes_of(prototype)) add(s, mesh, id++);
+      build(s, pool);
+    }
+    for (std::size_t i = 0; i < data->instances.size(); ++i) {
+      const Instance& instance = data->instances[i];
+      static_assert(offsetof(Instance, at) == 36 && sizeof instance.axes == 36);
+      RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(g, built[instance.prototype]);
+      rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, instance.axes.data());
+      rtcCommitGeometry(g);
+      rtcAttachGeometryByID(scene, g, first_instance + static_cast<unsigned>(i));
+      rtcReleaseGeometry(g);
+      if (i % 1024 == 0) pool.check_stop();
+    }
+    check("placing instances");
+  }
+
+  /// Names a hit by the indices of SceneData.
+  Hit hit(float t, std::array<unsigned, 3> at, float u, float v) const {
+    const auto [geometry, triangle, instance] = at;
+    if (instance == RTC_INVALID_GEOMETRY_ID) [[likely]]
+      return {t, geometry, triangle, u, v};
+    const std::uint32_t index = instance - first_instance;
+    const Prototype& prototype = data->prototypes[data->instances[index].prototype];
+    return {t, prototype.first_mesh + geometry, triangle, u, v, index};
   }
 };
 
@@ -142,18 +201,13 @@ RayCaster::RayCaster(const SceneData& data, const ThreadPool& pool)
         return true;
       },
       impl_.get());
-  impl_->scene = rtcNewScene(impl_->device);
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
-  for (std::size_t i = 0; i < data.meshes.size(); ++i) impl_->add(data, i);
-  rtcSetSceneProgressMonitorFunction(
-      impl_->scene,
-      [](void* user, double) { return !static_cast<const ThreadPool*>(user)->stopped(); },
-      const_cast<ThreadPool*>(&pool));
-  rtcCommitScene(impl_->scene);
-  rtcSetSceneProgressMonitorFunction(impl_->scene, nullptr, nullptr);
-  pool.check_stop();
-  impl_->check("building its acceleration structure");
+  impl_->data = &data;
+  impl_->first_instance = static_cast<std::uint32_t>(data.placed_meshes().size());
+  impl_->scene = impl_->new_scene();
+  std::size_t id = 0;
+  for (const Mesh& mesh : data.placed_meshes()) impl_->add(impl_->scene, mesh, id++);
+  impl_->add_instances(pool);
+  impl_->build(impl_->scene, pool);
 }
 
 RayCaster::~RayCaster() = default;
@@ -174,7 +228,8 @@ bool RayCaster::intersect(const Ray& ray, Hit& hit) const {
   rtcInitIntersectContext(&context);
   rtcIntersect1(impl_->scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  hit = impl_->hit(query.ray.tfar, {query.hit.geomID, query.hit.primID, query.hit.instID[0]},
+                   query.hit.u, query.hit.v);
   return true;
 }
 
@@ -204,7 +259,9 @@ void RayCaster::intersect(std::span<const Ray> rays, std::span<Hit> hits,
       const bool found = q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
       result[first + i] = found ? 1 : 0;
       if (found) {
-        hits[first + i] = {q.ray.tfar[i], q.hit.geomID[i], q.hit.primID[i], q.hit.u[i], q.hit.v[i]};
+        hits[first + i] =
+            impl_->hit(q.ray.tfar[i], {q.hit.geomID[i], q.hit.primID[i], q.hit.instID[0][i]},
+                       q.hit.u[i], q.hit.v[i]);
       }
     }
   }

@@ -21,12 +21,14 @@ struct alignas(32) Ray {
   float tmax = std::numeric_limits<float>::infinity();
 };
 
-/// The triangle that a ray hits, and the point on it: x = (1 - u - v) p0 + u p1 + v p2.
+/// The triangle that a ray hits, and the point on it: x = (1 - u - v) p0 + u p1 + v p2, in the
+/// coordinates of its mesh.
 struct Hit {
   float t = 0;
   std::uint32_t mesh = 0;
   std::uint32_t triangle = 0;
   float u = 0, v = 0;
+  std::uint32_t instance = no_instance;  ///< index into SceneData::instances, if `mesh` is of one
 };
 
 /// A traced ray, for benchmarks that trace the same rays through Embree directly.
@@ -40,10 +42,10 @@ struct RecordedRay {
 /// rejects and counts them.
 class RayCaster {
  public:
-  /// Copies the triangles of `scene` and keeps a pointer to its materials and textures for alpha
-  /// masks: points of alpha below the cutoff are not hit. Only meshes whose material has a mask get
-  /// a filter. Builds with the thread count of `pool`. Throws SceneError, std::bad_alloc if Embree
-  /// runs out of memory, and Stopped.
+  /// Copies the triangles of `scene`, those of prototypes once, and keeps a pointer to `scene`, for
+  /// instances and alpha masks: points of alpha below the cutoff are not hit. Only meshes whose
+  /// material has a mask get a filter. Builds with the thread count of `pool`. Throws SceneError,
+  /// std::bad_alloc if Embree runs out of memory, and Stopped.
   RayCaster(const SceneData& scene, const ThreadPool& pool);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;

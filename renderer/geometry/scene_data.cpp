@@ -15,19 +15,48 @@ V2f TextureRef::transform(const V2f& uv) const {
   return out + offset;
 }
 
-std::size_t SceneData::triangle_count() const {
+namespace {
+
+std::size_t triangles_of(std::span<const Mesh> meshes) {
   std::size_t count = 0;
   for (const Mesh& mesh : meshes) count += mesh.triangles.size();
   return count;
 }
 
-Bounds SceneData::bounds() const {
+}  // namespace
+
+Bounds bounds_of(std::span<const Mesh> meshes) {
   Bounds box;
   for (const Mesh& mesh : meshes) {
     for (const auto& triangle : mesh.triangles) {
       for (const auto i : triangle) box.add(mesh.positions[i]);
     }
   }
+  return box;
+}
+
+void SceneData::bound_ray_errors() {
+  if (instances.empty()) return;
+  const Bounds box = bounds();
+  const float reach = std::max(max_abs_component(V3f(box.low)), max_abs_component(V3f(box.high)));
+  for (Instance& i : instances) i.set_reach(reach);
+}
+
+std::size_t SceneData::stored_triangles() const { return triangles_of(meshes); }
+
+std::size_t SceneData::triangle_count() const {
+  std::vector<std::size_t> of_prototype;
+  for (const Prototype& p : prototypes) of_prototype.push_back(triangles_of(meshes_of(p)));
+  std::size_t count = triangles_of(placed_meshes());
+  for (const Instance& i : instances) count += of_prototype[i.prototype];
+  return count;
+}
+
+Bounds SceneData::bounds() const {
+  Bounds box = bounds_of(placed_meshes());
+  std::vector<Bounds> of_prototype;
+  for (const Prototype& p : prototypes) of_prototype.push_back(bounds_of(meshes_of(p)));
+  for (const Instance& i : instances) box.add(i.bounds(of_prototype[i.prototype]));
   return box;
 }
 

@@ -4,17 +4,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "renderer/core/bounds.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/core/vec.h"
+#include "renderer/geometry/instance.h"
 #include "renderer/images/texture.h"
 
 namespace lacuna {
 
-/// Triangles of one material under one node, in scene coordinates.
+/// Triangles of one material under one node, in scene coordinates, or in those of a prototype.
 struct Mesh {
   std::string name;
   std::vector<V3f> positions;
@@ -112,7 +114,11 @@ struct PunctualLight {
 /// The contents of a glTF file that Lacuna uses, validated: indices in range, coordinates and
 /// factors finite and within glTF's ranges, no degenerate triangles. Textures are not decoded yet.
 struct SceneData {
+  /// First those in scene coordinates, then those of the prototypes, in the prototypes'
+  /// coordinates. The latter do not emit.
   std::vector<Mesh> meshes;
+  std::vector<Prototype> prototypes;
+  std::vector<Instance> instances;
   std::vector<Material> materials;  ///< the last one is glTF's default material
   std::vector<std::unique_ptr<Texture>> textures;
   std::vector<CameraData> cameras;
@@ -123,13 +129,26 @@ struct SceneData {
   /// coordinates.
   V3d origin{0, 0, 0};
   std::uint64_t content_hash = 0;       ///< of all bytes read: the file, its buffers and its images
-  std::uint64_t geometry_hash = 0;      ///< of positions in scene coordinates and indices only
+  std::uint64_t geometry_hash = 0;      ///< of positions, indices and instances only
   std::uint64_t dropped_triangles = 0;  ///< zero area or non-finite vertices
   std::vector<std::string> warnings;    ///< ignored parts of the file
 
-  std::size_t triangle_count() const;
-  /// The bounding box of all triangles, scene units.
+  /// The meshes in scene coordinates.
+  std::span<const Mesh> placed_meshes() const {
+    return std::span(meshes).first(prototypes.empty() ? meshes.size() : prototypes[0].first_mesh);
+  }
+  std::span<const Mesh> meshes_of(const Prototype& p) const {
+    return std::span(meshes).subspan(p.first_mesh, p.mesh_count);
+  }
+  /// Sets Instance::ray_error of all instances, which are complete.
+  void bound_ray_errors();
+  std::size_t stored_triangles() const;  ///< those of prototypes once
+  std::size_t triangle_count() const;    ///< those of prototypes once for each instance
+  /// A box of all triangles, scene units; around instances not always the smallest.
   Bounds bounds() const;
 };
+
+/// The box of all triangles, in the coordinates of the meshes.
+Bounds bounds_of(std::span<const Mesh> meshes);
 
 }  // namespace lacuna

@@ -10,7 +10,37 @@ bool uses_textures(const Material& m) {
   return any;
 }
 
+/// Moves `s`, in the coordinates of a prototype but for its point, to the scene.
+void place(Surface& s, const Instance& instance, const TriangleShape& placed) {
+  const bool smooth = s.ns != s.ng;
+  const V3f n = instance.normal(s.ns);
+  s.ng = placed.ng;
+  s.ns = smooth && n.length2() > 0 ? n.normalized() : s.ng;
+  s.offset = ray_offset(s.x, s.ng, placed.plane_error);
+}
+
 }  // namespace
+
+Surface Surface::of_instance(const SceneData& scene, const TriangleTable& table, const Ray& ray,
+                             const Hit& hit) {
+  const TriangleShape placed = placed_triangle(scene, table, hit);
+  Surface s(scene, table, hit, placed.at(ray, hit.u, hit.v));
+  place(s, scene.instances[hit.instance], placed);
+  return s;
+}
+
+Surface Surface::of_instance(const SceneData& scene, const TriangleTable& table, const Hit& hit,
+                             const V3f& x) {
+  Surface s(scene, table, hit, x);
+  place(s, scene.instances[hit.instance], placed_triangle(scene, table, hit));
+  return s;
+}
+
+TriangleShape placed_triangle(const SceneData& scene, const TriangleTable& table, const Hit& hit) {
+  const TriangleRecord& r = table.at(hit.mesh, hit.triangle);
+  if (hit.instance == no_instance) return r;
+  return {r, scene.instances[hit.instance]};
+}
 
 TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
                                std::uint32_t triangle)
@@ -26,7 +56,7 @@ TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
 }
 
 TriangleTable::TriangleTable(const SceneData& scene) {
-  records_.reserve(scene.triangle_count());
+  records_.reserve(scene.stored_triangles());
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     First& first = first_.emplace_back(First{records_.size(), none});

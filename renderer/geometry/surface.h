@@ -64,6 +64,9 @@ class TriangleTable {
   HugeVector<TriangleAttributes> attributes_;
 };
 
+/// The triangle of a hit, in scene coordinates.
+TriangleShape placed_triangle(const SceneData& scene, const TriangleTable& table, const Hit& hit);
+
 /// The geometry of a hit. `ng` is unit and points to the front of the triangle.
 struct Surface {
   V3f x{0, 0, 0};
@@ -77,7 +80,12 @@ struct Surface {
   bool emits = false, emits_behind = false;
 
   Surface() = default;
-  // Inline: every hit constructs a Surface in place.
+  /// The hit of `ray`, or the hit at point `x` computed before, of a triangle of an instance.
+  static Surface of_instance(const SceneData& scene, const TriangleTable& table, const Ray& ray,
+                             const Hit& hit);
+  static Surface of_instance(const SceneData& scene, const TriangleTable& table, const Hit& hit,
+                             const V3f& x);
+  // Inline: every hit constructs a Surface in place. For instances use of_instance().
   /// The hit of `ray`.
   Surface(const SceneData& scene, const TriangleTable& table, const Ray& ray, const Hit& hit)
       : Surface(scene, table, hit, table.at(hit.mesh, hit.triangle).at(ray, hit.u, hit.v)) {}

@@ -47,7 +47,10 @@ std::optional<SurfaceContact> find_contact(const SurfaceSet& surfaces, const V3f
     Hit hit;
     for (float from = 0; from < 2; from += hit.t + part) {
       if (!surfaces.rays.intersect({x + along * (from - 1), along, 2 - from}, hit)) break;
-      add(contact, TriangleShape(surfaces.scene.meshes[hit.mesh], hit.triangle), x, hit.mesh);
+      const TriangleShape own(surfaces.scene.meshes[hit.mesh], hit.triangle);
+      const bool placed = hit.instance == no_instance;
+      add(contact, placed ? own : TriangleShape(own, surfaces.scene.instances[hit.instance]), x,
+          hit.mesh);
     }
   }
   return contact.count > 0 ? std::optional(contact) : std::nullopt;

@@ -5,9 +5,26 @@
 
 namespace lacuna {
 
-TriangleShape::TriangleShape(const Mesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.positions[t[k]];
+namespace {
+
+std::array<V3f, 3> corners_of(const Mesh& mesh, std::uint32_t triangle) {
+  std::array<V3f, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.positions[mesh.triangles[triangle][k]];
+  return corners;
+}
+
+}  // namespace
+
+TriangleShape::TriangleShape(const Mesh& mesh, std::uint32_t triangle)
+    : TriangleShape(corners_of(mesh, triangle)) {}
+
+TriangleShape::TriangleShape(const TriangleShape& shape, const Instance& instance)
+    : TriangleShape({instance.point(shape.corners[0]), instance.point(shape.corners[1]),
+                     instance.point(shape.corners[2])}) {
+  plane_error = shape.plane_error * instance.stretch + instance.ray_error;
+}
+
+TriangleShape::TriangleShape(const std::array<V3f, 3>& at) : corners(at) {
   const V3d n = normal();
   const double twice_area = n.length();
   ng = V3f(n.normalized());

@@ -22,7 +22,11 @@ struct TriangleShape {
   float plane_error = 0;
 
   TriangleShape() = default;
+  explicit TriangleShape(const std::array<V3f, 3>& corners);
   TriangleShape(const Mesh& mesh, std::uint32_t triangle);
+  /// The triangle of `shape` as an instance places it, in scene coordinates. Its plane_error
+  /// includes what Embree's transform of rays adds.
+  TriangleShape(const TriangleShape& shape, const Instance& instance);
   double area() const { return normal().length() / 2; }
   V3d edge(std::size_t to) const { return V3d(corners[to]) - V3d(corners[0]); }
   /// The normal, not unit: its length is twice the area.

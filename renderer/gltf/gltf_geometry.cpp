@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "renderer/gltf/gltf_duplicates.h"
+#include "renderer/gltf/gltf_instances.h"
 #include "renderer/gltf/gltf_limits.h"
 #include "renderer/gltf/gltf_origin.h"
 #include "renderer/gltf/gltf_primitives.h"
@@ -132,11 +134,11 @@ void warn_of_vertices(const Source& source, const Vertices& vertices, Warnings& 
   }
 }
 
-Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Warnings& warnings) {
+/// Positions are relative to `origin`.
+Mesh build_mesh(const Source& source, const SceneData& scene, const V3d& origin, Counts& counts,
+                Warnings& warnings) {
   Mesh mesh;
-  mesh.material = source.primitive().material >= 0
-                      ? static_cast<std::uint32_t>(source.primitive().material)
-                      : static_cast<std::uint32_t>(scene.materials.size() - 1);
+  mesh.material = static_cast<std::uint32_t>(material_of(source.primitive(), scene.materials));
   const Vertices vertices(source);
   mesh.triangles = assemble_triangles(source.model, source.primitive(), vertices.size(),
                                       vertices.mirrored(), source.place());
@@ -145,7 +147,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
                                      " corners make no whole triangle and are left out");
   }
   auto kept = compact(mesh.triangles, vertices.size());
-  mesh.positions = world_positions(source, vertices, kept, scene.origin);
+  mesh.positions = world_positions(source, vertices, kept, origin);
   counts.coarse += is_far_for_its_size(bounds_of(vertices, kept)) ? 1 : 0;
   const Dropped dropped = drop_unusable(mesh.triangles, mesh.positions);
   if (dropped.total() > 0) {
@@ -184,14 +186,17 @@ std::size_t moves_of(const file::Model& model, const file::Primitive& primitive,
 
 /// Counts before anything is built: a file of a few kilobytes can place one mesh a million times,
 /// and a morph target of a few bytes, which shares an accessor, can move every vertex.
-void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes) {
+void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes,
+                 const SharedMeshes& shared, const std::vector<Material>& materials) {
   std::size_t total = 0;
   std::size_t moves = 0;
   for (const PlacedNode& node : nodes) {
     const auto mesh = mesh_of(model, node);
     if (!mesh) continue;
+    const bool instance = shared.placed_as_instance(model, node);
     for (const auto& primitive : model.meshes[*mesh].primitives) {
       if (!is_drawn(primitive)) continue;
+      if (instance && !materials[material_of(primitive, materials)].emits()) continue;
       total += count_triangles(model, primitive);
       moves += moves_of(model, primitive, node);
       if (moves > max_moves) {
@@ -203,25 +208,6 @@ void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes)
                         " triangles in all down to here");
       }
     }
-  }
-}
-
-void add_node(const file::Model& model, const PlacedNode& node, const Skins& skins,
-              SceneData& scene, Counts& counts, Warnings& warnings) {
-  const auto mesh_index = mesh_of(model, node);
-  if (!mesh_index) return;
-  const file::Mesh& mesh = model.meshes[*mesh_index];
-  for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
-    const file::Primitive& primitive = mesh.primitives[k];
-    if (!is_drawn(primitive)) {
-      ++(is_triangle_mode(primitive.mode) ? counts.without_position : counts.points_and_lines);
-      continue;
-    }
-    const Source source{model, *mesh_index, k, node, skins};
-    if (source.hidden()) continue;
-    Mesh built = build_mesh(source, scene, counts, warnings);
-    built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
-    if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
   }
 }
 
@@ -237,40 +223,154 @@ std::string left_out(const Counts& counts) {
   return text;
 }
 
-}  // namespace
+/// Which primitives of a mesh.
+enum class Part { all, emitting, not_emitting };
 
-void build_meshes(const file::Model& model, const std::vector<PlacedNode>& nodes,
-                  const Skins& skins, SceneData& scene, Warnings& warnings) {
-  check_total(model, nodes);
-  scene.origin = scene_origin(model, nodes, skins);
+/// Builds the meshes of a scene.
+class Builder {
+ public:
+  Builder(const file::Model& model, const Skins& skins, SceneData& scene, Warnings& warnings)
+      : model_(model), skins_(skins), scene_(scene), warnings_(warnings) {}
+
+  /// Adds meshes of a node, relative to `origin`.
+  void add_node(const PlacedNode& node, Part part, const V3d& origin);
+  /// Adds the instances of those nodes that place shared meshes, and the prototypes.
+  void add_instances(const std::vector<PlacedNode>& nodes, const SharedMeshes& shared);
+  void warn() const;
   Counts counts;
-  for (const PlacedNode& node : nodes) {
-    if (node.place.has("mesh") && node.rank < 2 && !node.skin) ++counts.hidden;
-    add_node(model, node, skins, scene, counts, warnings);
+
+ private:
+  bool is_in(Part part, const file::Primitive& primitive) const {
+    const bool emits = scene_.materials[material_of(primitive, scene_.materials)].emits();
+    return part == Part::all || (part == Part::emitting) == emits;
   }
-  scene.dropped_triangles = counts.dropped.total();
+  /// Adds a prototype of the mesh of a node; returns its middle, in the mesh's coordinates.
+  V3d add_prototype(const PlacedNode& node);
+
+  const file::Model& model_;
+  const Skins& skins_;
+  SceneData& scene_;
+  Warnings& warnings_;
+};
+
+void Builder::add_node(const PlacedNode& node, Part part, const V3d& origin) {
+  if (node.place.has("mesh") && node.rank < 2 && !node.skin) ++counts.hidden;
+  const auto mesh_index = mesh_of(model_, node);
+  if (!mesh_index) return;
+  const file::Mesh& mesh = model_.meshes[*mesh_index];
+  for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
+    const file::Primitive& primitive = mesh.primitives[k];
+    if (!is_in(part, primitive)) continue;
+    if (!is_drawn(primitive)) {
+      ++(is_triangle_mode(primitive.mode) ? counts.without_position : counts.points_and_lines);
+      continue;
+    }
+    const Source source{model_, *mesh_index, k, node, skins_};
+    if (source.hidden()) continue;
+    Mesh built = build_mesh(source, scene_, origin, counts, warnings_);
+    built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
+    if (!built.triangles.empty()) scene_.meshes.push_back(std::move(built));
+  }
+}
+
+V3d Builder::add_prototype(const PlacedNode& node) {
+  PlacedNode unplaced = node;
+  unplaced.to_world = M44d();
+  const std::size_t first = scene_.meshes.size();
+  add_node(unplaced, Part::not_emitting, V3d(0.0));
+  const std::span<Mesh> added = std::span(scene_.meshes).subspan(first);
+  scene_.prototypes.push_back(
+      {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(added.size())});
+  const Bounds box = bounds_of(added);
+  const V3d middle = box.empty() ? V3d(0.0) : (box.low + box.high) / 2;
+  for (Mesh& mesh : added) {
+    for (V3f& p : mesh.positions) p = V3f(V3d(p) - middle);
+  }
+  return middle;
+}
+
+void Builder::add_instances(const std::vector<PlacedNode>& nodes, const SharedMeshes& shared) {
+  struct Added {
+    std::uint32_t prototype;
+    V3d middle;
+    Bounds box;
+  };
+  std::map<std::pair<std::size_t, bool>, Added> added;  // by mesh and whether it is mirrored
+  for (const PlacedNode& node : nodes) {
+    if (!shared.placed_as_instance(model_, node)) continue;
+    const auto key = std::pair(*mesh_of(model_, node), node.mirrored);
+    auto it = added.find(key);
+    if (it == added.end()) {
+      const V3d middle = add_prototype(node);
+      const auto index = static_cast<std::uint32_t>(scene_.prototypes.size() - 1);
+      const Bounds box = bounds_of(scene_.meshes_of(scene_.prototypes.back()));
+      it = added.emplace(key, Added{index, middle, box}).first;
+    }
+    const auto& [prototype, middle, box] = it->second;
+    if (box.empty()) continue;  // all of its triangles were dropped
+    M44d to_scene = node.to_world;
+    const V3d at = middle * node.to_world - scene_.origin;
+    for (int k = 0; k < 3; ++k) to_scene[3][k] = at[k];
+    const Instance& instance = scene_.instances.emplace_back(to_scene, prototype);
+    const Bounds placed = instance.bounds(box);
+    for (int k = 0; k < 3; ++k) {
+      if (std::max(std::abs(placed.low[k]), std::abs(placed.high[k])) <= max_coordinate) continue;
+      node.place.fail("its mesh reaches from " + std::to_string(placed.low[k]) + " to " +
+                      std::to_string(placed.high[k]) + "; allowed: " + coordinate_rule);
+    }
+  }
+  scene_.bound_ray_errors();
+}
+
+void Builder::warn() const {
   const std::string dropped = std::to_string(counts.dropped.degenerate) + " of zero area, " +
                               std::to_string(counts.dropped.non_finite) +
                               " with a vertex that is not finite";
   const std::string others = left_out(counts);
-  if (scene.meshes.empty()) {
+  if (scene_.meshes.empty()) {
     throw SceneError("the scene has no triangles (dropped: " + dropped +
                      (others.empty() ? "" : "; left out: " + others) + ")");
   }
-  if (!others.empty()) warnings.once("left out: " + others);
-  if (scene.dropped_triangles > 0) warnings.once("triangles dropped: " + dropped);
+  if (!others.empty()) warnings_.once("left out: " + others);
+  if (counts.dropped.total() > 0) warnings_.once("triangles dropped: " + dropped);
   if (counts.normals > 0) {
-    warnings.once(std::to_string(counts.normals) +
-                  " normals were zero or not finite and were replaced by geometric ones");
+    warnings_.once(std::to_string(counts.normals) +
+                   " normals were zero or not finite and were replaced by geometric ones");
   }
-  merge_equal_emitters(scene, warnings);
-  warn_of_places(scene, counts.coarse, warnings);
+}
+
+std::uint64_t geometry_hash(const SceneData& scene) {
   Hasher hasher;
   for (const Mesh& mesh : scene.meshes) {
     hasher.add(std::span(mesh.positions));
     hasher.add(std::span(mesh.triangles));
   }
-  scene.geometry_hash = hasher.digest();
+  if (!scene.instances.empty()) {
+    hasher.add(std::span(scene.prototypes));
+    hasher.add(std::span(scene.instances));
+  }
+  return hasher.digest();
+}
+
+}  // namespace
+
+void build_meshes(const file::Model& model, const std::vector<PlacedNode>& all_nodes,
+                  const Skins& skins, SceneData& scene, Warnings& warnings) {
+  const std::vector<PlacedNode> nodes = expand_instances(model, all_nodes, warnings);
+  const SharedMeshes shared(model, nodes, scene.materials);
+  check_total(model, nodes, shared, scene.materials);
+  scene.origin = scene_origin(model, nodes, skins);
+  Builder builder(model, skins, scene, warnings);
+  for (const PlacedNode& node : nodes) {
+    const bool instance = shared.placed_as_instance(model, node);
+    builder.add_node(node, instance ? Part::emitting : Part::all, scene.origin);
+  }
+  merge_equal_emitters(scene, warnings);
+  builder.add_instances(nodes, shared);
+  builder.warn();
+  scene.dropped_triangles = builder.counts.dropped.total();
+  warn_of_places(scene, builder.counts.coarse, warnings);
+  scene.geometry_hash = geometry_hash(scene);
 }
 
 }  // namespace lacuna::gltf

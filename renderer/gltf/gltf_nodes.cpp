@@ -34,43 +34,10 @@ LocalTransform local_transform(const GltfObject& node, const NodePose& pose) {
   };
   const auto scale = property(pose.scale, "scale", {1, 1, 1});
   const auto shift = property(pose.translation, "translation", {0, 0, 0});
-  auto q = property(pose.rotation, "rotation", {0, 0, 0, 1});
-  const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
-  for (double& component : q) component /= norm;
-  const auto [x, y, z, w] = q;
-  const V3d axes[3] = {
-      {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
-      {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
-      {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)},
-  };
-  M44d m, turn;
-  for (int i = 0; i < 3; ++i) {
-    const double s = scale[static_cast<std::size_t>(i)];
-    for (int j = 0; j < 3; ++j) {
-      m[i][j] = s * axes[i][j];
-      turn[i][j] = s == 0 ? axes[i][j] : m[i][j];
-    }
-    turn[3][i] = m[3][i] = shift[static_cast<std::size_t>(i)];
-  }
-  return {m, turn};
-}
-
-/// The unit direction of `a`, of any length; 0 if it has none.
-V3d direction(const V3d& a) {
-  const double largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
-  return largest > 0 ? (a / largest).normalized() : V3d(0.0);
-}
-
-/// See PlacedNode::rank. By the directions of the axes, so that a scale of 1e-8 along one of them
-/// is fine.
-int rank(const M44d& m) {
-  constexpr double cancelled = 1e-12;  // rounding error of 0 in products of matrices
-  const V3d axes[3] = {direction(row(m, 0)), direction(row(m, 1)), direction(row(m, 2))};
-  if (std::abs(axes[0].cross(axes[1]).dot(axes[2])) > cancelled) return 3;
-  for (int i = 0; i < 3; ++i) {
-    if (axes[i].cross(axes[(i + 1) % 3]).length() > cancelled) return 2;
-  }
-  return 0;
+  const auto rotation = property(pose.rotation, "rotation", {0, 0, 0, 1});
+  auto visible = scale;
+  for (double& s : visible) s = s == 0 ? 1 : s;
+  return {transform_of(scale, rotation, shift), transform_of(visible, rotation, shift)};
 }
 
 bool carries_something(const GltfObject& node) {
@@ -210,7 +177,7 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root, const Pose& pose, Wa
     const LocalTransform local = local_transform(node, pose_of(pose, visit.node));
     visit.to_world = local.exact * visit.to_world;
     visit.turn = local.turn * visit.turn;
-    if (const int own = rank(visit.to_world); own < visit.rank) {
+    if (const int own = rank_of(visit.to_world); own < visit.rank) {
       visit.rank = own;
       visit.flat_at = visit.node;
     }
@@ -221,7 +188,7 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root, const Pose& pose, Wa
       std::optional<std::size_t> skin;
       if (node.has("mesh")) skin = node.index("skin", skins, "skins");
       if (visit.rank < 3 && !skin) warn_of_rank(node, visit.rank, nodes[visit.flat_at], warnings);
-      const bool can_turn = rank(visit.turn) == 3;
+      const bool can_turn = rank_of(visit.turn) == 3;
       placed.push_back({node, visit.to_world, visit.rank, visit.turn, can_turn,
                         can_turn && determinant3(visit.turn) < 0,
                         morph_weights(node, meshes, pose_of(pose, visit.node)), skin});

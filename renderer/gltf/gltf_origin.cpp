@@ -26,21 +26,6 @@ Bounds posed_bounds(const Source& source, const Vertices& vertices, bool in_worl
   return box;
 }
 
-bool empty(const Bounds& box) { return !(box.low.x <= box.high.x); }
-
-/// Adds the corners of a box under a transform.
-void add_corners(const Bounds& local, const M44d& to_world, Bounds& box) {
-  for (int corner = 0; corner < 8; ++corner) {
-    V3d p;
-    for (int k = 0; k < 3; ++k) p[k] = ((corner >> k) & 1) != 0 ? local.high[k] : local.low[k];
-    p = p * to_world;
-    for (int k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], p[k]);
-      box.high[k] = std::max(box.high[k], p[k]);
-    }
-  }
-}
-
 Bounds scene_bounds(const file::Model& model, const std::vector<PlacedNode>& nodes,
                     const Skins& skins) {
   std::vector<std::vector<std::optional<Bounds>>> local(model.meshes.size());
@@ -52,16 +37,22 @@ Bounds scene_bounds(const file::Model& model, const std::vector<PlacedNode>& nod
     for (std::size_t i = 0; i < local[*mesh].size(); ++i) {
       const Source source{model, *mesh, i, node, skins};
       if (!is_drawn(source.primitive()) || source.hidden()) continue;
-      const Vertices vertices(source);
-      if (!vertices.rigid()) {
-        if (const Bounds posed = posed_bounds(source, vertices, true); !empty(posed)) {
-          add_corners(posed, M44d(), box);
-        }
+      auto& own = local[*mesh][i];
+      const auto add_own = [&] {
+        if (own->empty()) return;
+        box.add(own->with_corners_moved([&](const V3d& p) { return p * node.to_world; }));
+      };
+      if (own && !node.skin && node.weights.empty()) {
+        add_own();
         continue;
       }
-      auto& own = local[*mesh][i];
+      const Vertices vertices(source);
+      if (!vertices.rigid()) {
+        box.add(posed_bounds(source, vertices, true));
+        continue;
+      }
       if (!own) own = posed_bounds(source, vertices, false);
-      if (!empty(*own)) add_corners(*own, node.to_world, box);
+      add_own();
     }
   }
   return box;
@@ -91,7 +82,7 @@ bool is_far_for_its_size(const Bounds& box) {
   for (int k = 0; k < 3; ++k) {
     largest = std::max({largest, std::abs(box.low[k]), std::abs(box.high[k])});
   }
-  return !empty(box) && largest > too_far * longest(box.size());
+  return !box.empty() && largest > too_far * longest(box.size());
 }
 
 void warn_of_places(const SceneData& scene, std::uint64_t coarse, Warnings& warnings) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "renderer/core/scene_error.h"
+#include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_accessors.h"
 #include "renderer/gltf/gltf_model.h"
 #include "renderer/gltf/gltf_nodes.h"
@@ -14,6 +15,13 @@ namespace lacuna::gltf {
 
 inline bool is_drawn(const file::Primitive& primitive) {
   return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
+}
+
+/// Index into the scene's materials, the last of which is glTF's default.
+inline std::size_t material_of(const file::Primitive& primitive,
+                               const std::vector<Material>& materials) {
+  return primitive.material >= 0 ? static_cast<std::size_t>(primitive.material)
+                                 : materials.size() - 1;
 }
 
 /// The index of a node's mesh; none if it has no mesh, or if its scale leaves nothing of it. A

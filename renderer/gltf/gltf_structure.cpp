@@ -12,9 +12,9 @@ namespace {
 constexpr std::uint64_t max_bytes = (std::uint64_t{1} << 32) - 1;
 
 constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {meshopt_extension, "KHR_lights_punctual", "KHR_materials_emissive_strength",
-     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
-     "KHR_mesh_quantization", "KHR_texture_transform"});
+    {"EXT_mesh_gpu_instancing", meshopt_extension, "KHR_lights_punctual",
+     "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular",
+     "KHR_materials_transmission", "KHR_mesh_quantization", "KHR_texture_transform"});
 
 struct Sizes {
   explicit Sizes(const GltfObject& root)

@@ -16,7 +16,7 @@ struct Neighbour {
 float largest_offset(const Scene& scene) {
   float largest = 0;
   const SceneData& data = scene.data();
-  for (std::uint32_t m = 0; m < data.meshes.size(); ++m) {
+  for (std::uint32_t m = 0; m < data.placed_meshes().size(); ++m) {
     for (std::uint32_t t = 0; t < data.meshes[m].triangles.size(); ++t) {
       largest = std::max(largest, scene.triangle(m, t).plane_error);
     }
@@ -34,7 +34,7 @@ std::optional<Neighbour> neighbour(const Scene& scene, const TriangleShape& own,
   if (!scene.rays().intersect({x + n * away, -n, 2 * away}, hit) || hit.mesh == mesh) {
     return std::nullopt;
   }
-  const TriangleShape& other = scene.triangle(hit.mesh, hit.triangle);
+  const TriangleShape other = scene.triangle(hit);
   if (dot(other.ng, own.ng) <= 0) return std::nullopt;  // both face the gap: a box on a floor
   const V3d normal = other.normal();
   const double gap = std::abs((V3d(x) - V3d(other.corners[0])).dot(normal)) / normal.length();
@@ -51,7 +51,7 @@ std::vector<std::string> close_surfaces(const Scene& scene) {
   const float coarsest = largest_offset(scene);
   std::size_t looked_at = 0, close = 0;
   std::string first;
-  for (std::uint32_t m = 0; m < data.meshes.size(); ++m) {
+  for (std::uint32_t m = 0; m < data.placed_meshes().size(); ++m) {
     const std::size_t count = data.meshes[m].triangles.size();
     const std::size_t step = (count + of_a_mesh - 1) / of_a_mesh;
     for (std::size_t t = 0; t < count; t += std::max<std::size_t>(step, 1)) {

@@ -39,13 +39,23 @@ class Scene {
 
   const SceneData& data() const { return *data_; }
   /// The surface at a hit of rays().
-  Surface surface(const Ray& ray, const Hit& hit) const { return {*data_, triangles_, ray, hit}; }
+  Surface surface(const Ray& ray, const Hit& hit) const {
+    if (hit.instance != no_instance) [[unlikely]]
+      return Surface::of_instance(*data_, triangles_, ray, hit);
+    return {*data_, triangles_, ray, hit};
+  }
   /// The same if the point `x` has been computed.
-  Surface surface(const Hit& hit, const V3f& x) const { return {*data_, triangles_, hit, x}; }
-  /// The geometry of a triangle.
+  Surface surface(const Hit& hit, const V3f& x) const {
+    if (hit.instance != no_instance) [[unlikely]]
+      return Surface::of_instance(*data_, triangles_, hit, x);
+    return {*data_, triangles_, hit, x};
+  }
+  /// The geometry of a triangle of a placed mesh.
   const TriangleShape& triangle(std::uint32_t mesh, std::uint32_t triangle) const {
     return triangles_.at(mesh, triangle);
   }
+  /// The geometry of the triangle of a hit.
+  TriangleShape triangle(const Hit& hit) const { return placed_triangle(*data_, triangles_, hit); }
   /// Prefetches what surface() reads.
   void prefetch(const Hit& hit) const { triangles_.prefetch(hit.mesh, hit.triangle); }
   const RayCaster& rays() const { return rays_; }

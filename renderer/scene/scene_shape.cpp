@@ -11,7 +11,6 @@ namespace {
 
 /// Adds a triangle's centre and points near its corners: a large light may illuminate several
 /// rooms.
-/// than one room.
 void add_emitter(DomainSeeds& seeds, const std::array<V3d, 3>& corners, bool both_sides) {
   const V3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const V3d centre = (corners[0] + corners[1] + corners[2]) / 3;
@@ -24,21 +23,35 @@ void add_emitter(DomainSeeds& seeds, const std::array<V3d, 3>& corners, bool bot
   }
 }
 
+/// Appends the triangles of meshes.
+void append(std::span<const Mesh> meshes, std::vector<V3f>& positions,
+            std::vector<TriangleSoup::Triangle>& triangles) {
+  std::size_t vertices = 0, count = 0;
+  for (const Mesh& m : meshes) {
+    vertices += m.positions.size();
+    count += m.triangles.size();
+  }
+  positions.reserve(vertices);
+  triangles.reserve(count);
+  for (const Mesh& m : meshes) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    positions.insert(positions.end(), m.positions.begin(), m.positions.end());
+    for (const auto& t : m.triangles) {
+      triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+}
+
 }  // namespace
 
 TriangleSoup triangle_soup(const SceneData& scene) {
   TriangleSoup soup;
-  std::size_t vertices = 0;
-  for (const Mesh& m : scene.meshes) vertices += m.positions.size();
-  soup.positions.reserve(vertices);
-  soup.triangles.reserve(scene.triangle_count());
-  for (const Mesh& m : scene.meshes) {
-    const auto first = static_cast<std::uint32_t>(soup.positions.size());
-    soup.positions.insert(soup.positions.end(), m.positions.begin(), m.positions.end());
-    for (const auto& t : m.triangles) {
-      soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
+  append(scene.placed_meshes(), soup.positions, soup.triangles);
+  for (const Prototype& p : scene.prototypes) {
+    auto& [positions, triangles] = soup.prototypes.emplace_back();
+    append(scene.meshes_of(p), positions, triangles);
   }
+  for (const Instance& i : scene.instances) soup.place({i.prototype, i.axes, i.at});
   return soup;
 }
 

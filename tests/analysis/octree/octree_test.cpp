@@ -123,7 +123,9 @@ TEST(SurfaceOctree, AtItsEnds) {
   const ThreadPool pool(1);
   EXPECT_TRUE(surface_octree({}, 5, pool, no_memory_limit).empty());
   // All triangles in one point.
-  const TriangleSoup point{{V3f(1, 2, 3), V3f(1, 2, 3), V3f(1, 2, 3)}, {{0, 1, 2}}};
+  TriangleSoup point;
+  point.positions.assign(3, V3f(1, 2, 3));
+  point.triangles = {{0, 1, 2}};
   const Octree tree = surface_octree(point, 4, pool, no_memory_limit);
   expect_whole(tree, 4);
   EXPECT_LE(tree.leaves().size(), 8U);

@@ -12,6 +12,7 @@ namespace lacuna {
 namespace {
 
 using Imath::V3d;
+using Imath::V3f;
 using Imath::V3i;
 
 Voxels voxels_of(const TriangleSoup& soup, int resolution) {
@@ -209,6 +210,65 @@ TEST(Voxelize, IsRefusedBeforeItTakesTooMuchMemory) {
   } catch (const MemoryLimitError& e) {
     EXPECT_NE(std::string(e.what()).find("2048 x 2048 x 2048"), std::string::npos) << e.what();
   }
+}
+
+/// `count` placements of a sphere of 2 * n * n triangles, by exact transforms; and their copies.
+struct PlacedSpheres {
+  PlacedSpheres(int count, int n) {
+    const std::array<V3d, 3> axes{V3d(1, 0, 0), V3d(0, 1, 0), V3d(0, 0, 1)};
+    TriangleSoup sphere;
+    add_sphere(sphere, V3d(0), axes, 1, n);
+    placed.prototypes.push_back({sphere.positions, sphere.triangles});
+    copies = sphere, placed.positions = sphere.positions, placed.triangles = sphere.triangles;
+    std::mt19937 rng(45);
+    std::uniform_int_distribution<int> at(-64, 64), power(-1, 2);
+    for (int i = 0; i < count; ++i) {
+      const float s = std::exp2f(static_cast<float>(power(rng)));
+      placed.place({0,
+                    {V3f(0, s, 0), V3f(-s, 0, 0), V3f(0, 0, s / 2)},
+                    V3f(static_cast<float>(at(rng)), static_cast<float>(at(rng)),
+                        static_cast<float>(at(rng)))});
+      for (const auto& t : sphere.triangles) {
+        const auto& p = placed.placements.back();
+        add_triangle(copies, p.point(sphere.positions[t[0]]), p.point(sphere.positions[t[1]]),
+                     p.point(sphere.positions[t[2]]));
+      }
+    }
+  }
+  TriangleSoup placed, copies;
+};
+
+/// The copies' corners are rounded to floats, the placements' are not: they may differ on a border.
+std::size_t differing_voxels(const Voxels& a, const Voxels& b) {
+  std::size_t count = 0;
+  Imath::V3i v;
+  for (v.z = 0; v.z < a.scene.size().z; ++v.z)
+    for (v.y = 0; v.y < a.scene.size().y; ++v.y)
+      for (v.x = 0; v.x < a.scene.size().x; ++v.x) count += a.scene.get(v) != b.scene.get(v) ? 1 : 0;
+  return count;
+}
+
+TEST(Voxelize, PlacementsAreAsCopies) {
+  const PlacedSpheres spheres(30, 6);
+  ASSERT_EQ(spheres.placed.size(), spheres.copies.size());
+  const Voxels placed = voxels_of(spheres.placed, 90), copies = voxels_of(spheres.copies, 90);
+  ASSERT_EQ(placed.scene.size(), copies.scene.size());
+  EXPECT_LT(differing_voxels(placed, copies), 3U);
+  EXPECT_EQ(placed.scene, voxelize(spheres.placed, 90, four_threads(), no_memory_limit).scene);
+}
+
+/// More triangles than one batch has: the last placement counts as the first does.
+TEST(LongVoxelize, TakesAnyNumberOfPlacements) {
+  PlacedSpheres spheres(4, 64);
+  const TriangleSoup few = spheres.placed;
+  const TriangleSoup::Placement last{0, few.placements[0].axes, V3f(80, 80, 80)};
+  while (spheres.placed.size() < (std::uint64_t{1} << 24) + 100) {
+    spheres.placed.place(few.placements[spheres.placed.placements.size() % 4]);
+  }
+  spheres.placed.place(last);
+  TriangleSoup alone = few;
+  alone.place(last);
+  EXPECT_EQ(voxels_of(spheres.placed, 100).scene, voxels_of(alone, 100).scene);
 }
 
 }  // namespace

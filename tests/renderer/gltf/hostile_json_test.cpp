@@ -257,10 +257,14 @@ std::vector<HostileCase> graph_cases() {
        {"more than 256 levels deep"}},
       {"TooManyTriangles",
        [](GlbBuilder& b) {
-         // 4,000 nodes share one fan of 40,000 triangles: small on disk, 160 million in memory.
+         // 4,000 nodes share one fan of 40,000 triangles: small on disk, 160 million in memory, as
+         // each lamp has a copy.
          const std::vector<V3f> points(40002, V3f(1, 2, 3));
+         b.json["materials"].push_back({{"emissiveFactor", {1, 1, 1}}});
          b.json["meshes"][0]["primitives"][0] = {
-             {"mode", 6}, {"attributes", {{"POSITION", b.add_accessor(points, 5126, "VEC3")}}}};
+             {"mode", 6},
+             {"material", b.json["materials"].size() - 1},
+             {"attributes", {{"POSITION", b.add_accessor(points, 5126, "VEC3")}}}};
          for (int i = 0; i < 4000; ++i) b.add_node({{"mesh", 0}});
        },
        {"triangles in all"}},
