@@ -10,6 +10,7 @@
 
 #include "renderer/scene/close_surfaces.h"
 #include "renderer/scene/hidden_emitters.h"
+#include "renderer/scene/nested_solids.h"
 #include "renderer/scene/points_in_surfaces.h"
 
 namespace lacuna {
@@ -34,7 +35,7 @@ SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& poo
                      data.textures.size(),  data.cameras.size(),
                      data.lights.size(),    data.warnings};
   const Scene scene(std::move(data), {.materials = true, .emission = true}, std::nullopt, pool);
-  for (const auto& looks : {close_surfaces, hidden_emitters, lights_in_surfaces}) {
+  for (const auto& looks : {close_surfaces, hidden_emitters, lights_in_surfaces, nested_solids}) {
     for (std::string& w : looks(scene)) counts.warnings.push_back(std::move(w));
   }
   return counts;

@@ -4,6 +4,7 @@
 #include "renderer/scene/delta_surfaces.h"
 #include "renderer/scene/hidden_emitters.h"
 #include "renderer/scene/material_change.h"
+#include "renderer/scene/nested_solids.h"
 #include "renderer/scene/particles.h"
 #include "renderer/scene/points_in_surfaces.h"
 
@@ -104,6 +105,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
   if (scene.emitters().empty()) all.emplace_back("the scene has no light: the picture is black");
   add(hidden_emitters(scene));
   add(lights_in_surfaces(scene));
+  add(nested_solids(scene));
   if (from_lights_only(integrator)) add(missing_reflections(scene, camera));
   return all;
 }

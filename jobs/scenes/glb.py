@@ -205,6 +205,7 @@ def metal(name, colour, roughness):
 def glass(name, ior=1.5):
     extensions = {"KHR_materials_transmission": {"transmissionFactor": 1.0}}
     extensions["KHR_materials_ior"] = {"ior": ior}
+    extensions["KHR_materials_volume"] = {"thicknessFactor": 1.0}  # a solid, not a thin wall
     return surface(name, (1, 1, 1), 0.0, 0.0, extensions=extensions)
 
 

@@ -159,7 +159,7 @@ void EmitterSet::add_mesh(std::uint32_t m, MeansOfTextures& means, std::vector<d
   const Material& material = scene_->materials[mesh.material];
   if (!material.emits()) return;
   Source source{Source::Kind::mesh,
-                material.double_sided,
+                material.emits_behind(),
                 material.emission_texture.used(),
                 material.emission,
                 m,

@@ -12,6 +12,7 @@
 #include "renderer/core/scene_error.h"
 #include "renderer/core/vec.h"
 #include "renderer/geometry/instance.h"
+#include "renderer/geometry/material_extensions.h"
 #include "renderer/images/texture.h"
 
 namespace lacuna {
@@ -37,21 +38,8 @@ struct Mesh {
   }
 };
 
-/// A material's reference to a texture: image, coordinates and KHR_texture_transform.
-struct TextureRef {
-  int texture = -1;  ///< index into SceneData::textures; -1: no texture, only the factor
-  int uv_set = 0;
-  V2f offset{0, 0};
-  V2f scale{1, 1};
-  float rotation = 0;  ///< radians, counter-clockwise as glTF defines it
-
-  bool used() const { return texture >= 0; }
-  V2f transform(const V2f& uv) const;
-  bool operator==(const TextureRef&) const = default;
-};
-
-/// glTF 2.0 metallic-roughness with KHR_materials_emissive_strength, _ior, _specular and
-/// _transmission. Factors are linear and multiply their texture.
+/// glTF 2.0 metallic-roughness with KHR_materials_emissive_strength, _ior, _specular,
+/// _transmission and those of MaterialExtensions. Factors are linear and multiply their texture.
 struct Material {
   std::string name;
   Rgb base_color{1, 1, 1};
@@ -69,11 +57,20 @@ struct Material {
   TextureRef specular_color_texture;  ///< sRGB
   float transmission = 0;
   TextureRef transmission_texture;  ///< R
-  bool mask = false;                ///< alphaMode MASK: rays pass where alpha < cutoff
+  MaterialExtensions extensions;
+  bool mask = false;  ///< alphaMode MASK: rays pass where alpha < cutoff
   float alpha_cutoff = 0.5F;
   bool double_sided = false;  ///< emits from both sides; all surfaces scatter on both
 
   bool emits() const { return !is_black(emission); }
+  /// Light behind the surface, whatever absorbs there, comes from other surfaces only.
+  bool emits_behind() const { return emits() && double_sided && medium() == nullptr; }
+  /// The absorbing medium behind the surface; null: there is none.
+  const Medium* medium() const {
+    const bool passes = transmission > 0 || extensions.diffuse_transmission.factor > 0;
+    const Volume& v = extensions.volume;
+    return passes && v.solid && !is_black(v.inside.extinction) ? &v.inside : nullptr;
+  }
   bool operator==(const Material&) const = default;
 
   /// Calls `f` with each texture that scattering depends on.
@@ -83,6 +80,7 @@ struct Material {
                                 &specular_color_texture, &transmission_texture}) {
       if (t->used()) f(*t);
     }
+    extensions.for_each_texture(f);
   }
 };
 

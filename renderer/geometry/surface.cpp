@@ -51,7 +51,7 @@ TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
   textured = uses_textures(m) && !(mesh.uvs[0].empty() && mesh.uvs[1].empty());
   two_uv_sets = !mesh.uvs[1].empty();
   emits = m.emits();
-  emits_behind = emits && m.double_sided;
+  emits_behind = m.emits_behind();
   material = mesh.material;
 }
 

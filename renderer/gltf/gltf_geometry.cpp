@@ -74,14 +74,15 @@ std::uint64_t mend_normals(Mesh& mesh) {
   return mended;
 }
 
-/// Which of TEXCOORD_0 and _1 the material's textures read.
+/// Which of TEXCOORD_0 and _1 the material's textures read, or the direction of its facets.
 std::array<bool, 2> uv_sets_used(const Material& m) {
   std::array<bool, 2> used{};
-  for (const TextureRef* ref :
-       {&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture,
-        &m.specular_texture, &m.specular_color_texture, &m.transmission_texture}) {
-    if (ref->used()) used[static_cast<std::size_t>(ref->uv_set)] = true;
-  }
+  const auto use = [&](const TextureRef& ref) {
+    used[static_cast<std::size_t>(ref.uv_set)] = true;
+  };
+  m.for_each_scattering_texture(use);
+  if (m.emission_texture.used()) use(m.emission_texture);
+  if (m.extensions.anisotropy.strength > 0) use(m.extensions.anisotropy.texture);
   return used;
 }
 

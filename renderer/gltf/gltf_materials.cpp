@@ -1,5 +1,7 @@
 #include "renderer/gltf/gltf_materials.h"
 
+#include "renderer/gltf/gltf_material_extensions.h"
+
 namespace lacuna::gltf {
 namespace {
 
@@ -96,6 +98,7 @@ std::vector<Material> read_materials(const GltfObject& root, TextureTable& textu
     read_metallic_roughness(material, textures, out);
     read_emission(material, textures, out);
     read_specular(material, textures, out);
+    read_material_extensions(material, textures, out.extensions);
     read_alpha(material, warnings, out);
     warn_of_unread_extensions(material, warnings);
     materials.push_back(std::move(out));

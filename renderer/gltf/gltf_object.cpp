@@ -186,6 +186,13 @@ std::optional<GltfObject> GltfObject::object(std::string_view key) const {
   return GltfObject(std::move(*found), *problems_);
 }
 
+std::string GltfObject::extra(std::string_view key) const {
+  const auto extras = cursor_.find("extras");
+  if (!extras || !extras->value().is_object()) return {};
+  const auto found = extras->find(key);
+  return found && found->value().is_string() ? found->value().get<std::string>() : std::string();
+}
+
 std::optional<GltfObject> GltfObject::extension(std::string_view name) const {
   const auto extensions = object("extensions");
   return extensions ? extensions->object(name) : std::nullopt;

@@ -84,6 +84,9 @@ class GltfObject {
   std::vector<GltfObject> objects(std::string_view key) const;
   std::size_t array_size(std::string_view key) const;
 
+  /// A string in `extras`, which may be anything; empty if there is none.
+  std::string extra(std::string_view key) const;
+
   /// An array of strings; empty if the key is absent.
   std::vector<std::string> strings(std::string_view key) const;
   std::vector<std::string> keys() const;

@@ -13,8 +13,10 @@ constexpr std::uint64_t max_bytes = (std::uint64_t{1} << 32) - 1;
 
 constexpr auto supported_extensions = std::to_array<std::string_view>(
     {"EXT_mesh_gpu_instancing", meshopt_extension, "KHR_lights_punctual",
-     "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular",
-     "KHR_materials_transmission", "KHR_mesh_quantization", "KHR_texture_transform"});
+     "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_diffuse_transmission",
+     "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence",
+     "KHR_materials_sheen", "KHR_materials_specular", "KHR_materials_transmission",
+     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform"});
 
 struct Sizes {
   explicit Sizes(const GltfObject& root)

@@ -5,6 +5,7 @@
 
 #include "renderer/core/density.h"
 #include "renderer/core/vec.h"
+#include "renderer/materials/facets.h"
 #include "renderer/materials/lambert.h"
 #include "renderer/materials/lobes.h"
 
@@ -55,9 +56,10 @@ struct LambertLobe {
 /// The BSDF at a point of a surface: a flat value, constructed for each hit, without allocation or
 /// virtual calls. The glTF metallic-roughness model, mix(dielectric, metal, metallic):
 /// - metal: GGX, Schlick from base_color to white;
-/// - dielectric: a GGX layer, Schlick from f0 to f90, over Lambert (layer.h); where it transmits, a
-///   refracting interface with exact Fresnel (interface.h).
-/// With f0 = f90 = 0 and no other lobe it is exactly Lambert.
+/// - dielectric: a GGX layer, Schlick from f0 to f90, over Lambert (layer.h), which may scatter to
+///   both sides; where it transmits, an interface with exact Fresnel (interface.h);
+/// - over both, sheen and a coat (covers.h).
+/// With f0 = f90 = 0 and no other lobe it is exactly Lambert. docs/materials.md has the equations.
 ///
 /// `wo` and `wi` are unit, in world space, and leave the surface; `wi` is sampled. The geometric
 /// normal `ng` decides on which side a direction lies, so light never leaks through a surface.
@@ -75,6 +77,13 @@ class Bsdf {
         ns_(dot(ns, ng) < 0 ? -ns : ns),
         flat_((ns_ - ng).length2() < 1e-12F),
         lobes_(lobes) {}
+
+  /// Whether set_tangents() must be called: the facets have two widths.
+  bool needs_tangents() const { return lobes_.alpha_along > 0; }
+  /// The tangent frame of the surface, unit, in which SurfaceParams::direction lies.
+  void set_tangents(const V3f& tangent, const V3f& bitangent) {
+    along_ = lobes_.direction.x * tangent + lobes_.direction.y * bitangent;
+  }
 
   /// f(wo, wi) |cos(wi, ns)| of all non-delta lobes; the cosine is included.
   Rgb eval(const V3f& wo, const V3f& wi, Transport transport) const {
@@ -125,21 +134,29 @@ class Bsdf {
   bool connectible() const {
     return lobes_.kind == Lobes::Kind::lambert ||
            (lobes_.kind == Lobes::Kind::layered &&
-            (!lobes_.interface.smooth() || lobes_.has_diffuse()));
+            (!lobes_.interface.smooth() || lobes_.has_diffuse() ||
+             (lobes_.extended && has_broad_extension())));
   }
 
   /// eval(from, w, importance) as a function of w; none unless the surface is purely Lambertian.
   std::optional<LambertLobe> lambert_lobe(const V3f& from) const;
 
   /// Whether the surface can carry and receive virtual lights: it is opaque and has a broad lobe,
-  /// diffuse or GGX with alpha >= `least_alpha`.
+  /// diffuse or GGX with alpha >= `least_alpha`, or sheen.
   bool is_vpl_receiver(float least_alpha) const {
     if (transmits() || !connectible()) return false;
-    return lobes_.has_diffuse() || lobes_.interface.alpha >= least_alpha;
+    return lobes_.has_diffuse() || lobes_.interface.alpha >= least_alpha ||
+           (lobes_.extended &&
+            (lobes_.covers.sheen.any() || lobes_.covers.coat.alpha >= least_alpha));
   }
   /// Whether some lobe transmits light to the other side.
   bool transmits() const {
-    return lobes_.kind == Lobes::Kind::layered && lobes_.interface.glass > 0;
+    return lobes_.kind == Lobes::Kind::layered &&
+           (lobes_.interface.glass > 0 || (lobes_.extended && !is_black(lobes_.diffuse_through)));
+  }
+  /// The medium that light crosses in direction `w`; null: none.
+  const Medium* medium(const V3f& w) const {
+    return lobes_.medium != nullptr && dot(w, ng_) < 0 ? lobes_.medium : nullptr;
   }
 
   /// Albedo, for the layer of that name: the sum of the lobes' reflectances.
@@ -151,28 +168,36 @@ class Bsdf {
   /// Probabilities of the lobes for one wo; they sum to 1, or are all 0.
   struct Choice {
     double diffuse = 0;
-    double facets = 0;  ///< of sampling a facet, which reflects or transmits
-    double clear = 0;   ///< of the transmission of Interface::clear()
+    double through = 0;  ///< of Lambert's lobe on the other side
+    double facets = 0;   ///< of sampling a facet, which reflects or transmits
+    double clear = 0;    ///< of the transmission of Interface::clear()
+    double coat = 0, sheen = 0;
   };
   /// The quantities that depend on `wo` and the normal used.
   struct ShadingFrame {
     V3f n;  ///< on the side of wo
     bool front;
     float cos_o;
-    float eta;
-    float mean_weight = 0;  ///< of the layer, if facets_compete()
+    float eta;                     ///< Interface::eta()
+    float bend;                    ///< Interface::bend()
+    float mean_weight = 0;         ///< of the layer, if facets_compete()
+    Covers::Through through = {};  ///< on the side of wo
   };
   /// f |cos| for radiance, and the density for one normal; 0 unless requested.
   struct Scatter {
     Rgb f{0, 0, 0};
     float pdf = 0;
   };
+  /// The delta lobes of one direction together, without the 1 / bend^2 of radiance.
+  struct DeltaSum {
+    Rgb value{0, 0, 0};  ///< reflectance or transmittance
+    double p = 0;        ///< probability of sampling one; 0: there is none
+  };
   /// A sample of a lobe, before the test of its side.
   struct LobeSample {
     V3f wi;
-    Rgb share{0, 0, 0};  ///< of a delta lobe: reflectance or transmittance over its probability
-    bool delta = false;
     bool transmitted = false;
+    DeltaSum delta = {};
   };
 
   /// Whether the BSDF is a single symmetric Lambertian lobe: the fast path.
@@ -220,8 +245,22 @@ class Bsdf {
   std::optional<BsdfSample> sample_any(const V3f& wo, double u_lobe, const V2f& u,
                                        Transport transport) const;
 
+  bool has_broad_extension() const;
+  Facets facets(const V3f& n) const {
+    const float alpha = lobes_.interface.alpha;
+    return needs_tangents() ? Facets(n, alpha, lobes_.alpha_along, along_) : Facets(n, alpha);
+  }
+  /// What the covers let through of direction `w`: all behind the surface of a solid, where its
+  /// inside is, and without covers.
+  Covers::Through let_through(const V3f& w, float cos) const {
+    const bool covered = lobes_.extended && (lobes_.interface.thin || dot(w, ng_) > 0);
+    return covered ? lobes_.covers.through(cos) : Covers::Through{};
+  }
+
   ShadingFrame shading_frame(const V3f& n, const V3f& wo) const;
   Choice choice(const ShadingFrame& from) const;
+  void weigh_base(const ShadingFrame& from, Choice& c) const;
+  void add_covers(const ShadingFrame& from, Choice& c) const;
   /// `c` may be null unless want_pdf.
   template <bool want_f, bool want_pdf>
   Scatter scatter(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi) const;
@@ -231,12 +270,29 @@ class Bsdf {
   template <bool want_f, bool want_pdf>
   void transmitted(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                    Scatter& s) const;
+  template <bool want_f, bool want_pdf>
+  void refracted(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
+                 Scatter& s) const;
+  template <bool want_f, bool want_pdf>
+  void mirrored(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
+                Scatter& s) const;
+  /// Scales what lies below the covers, and adds their lobes, to the same side only.
+  template <bool want_f, bool want_pdf>
+  void cover(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
+             Scatter& s) const;
   /// 1: wi is on wo's side of both normals (reflection); -1: on the other side of both
   /// (transmission); 0: neither.
   int passage(const ShadingFrame& from, const V3f& wi) const;
 
   std::optional<LobeSample> sample_lobe(const ShadingFrame& from, const Choice& c, const V3f& wo,
                                         double u_lobe, const V2f& u) const;
+  LobeSample sample_coat(const ShadingFrame& from, const Choice& c, const V3f& wo,
+                         const V2f& u) const;
+  /// The direction in which the facet `m` transmits; none under total reflection.
+  std::optional<V3f> passed(const ShadingFrame& from, const V3f& wo, const V3f& m) const;
+  /// The delta lobes that scatter wo to `wi`; `split` of the facet that does.
+  DeltaSum delta_sum(const ShadingFrame& from, const Choice& c, const Interface::Split& split,
+                     const V3f& wi, bool transmitted) const;
   /// Probability of the delta lobe of the facets, or of Interface::clear(), with facets of `split`.
   double delta_probability(const Choice& c, const Interface::Split& split, bool transmitted) const;
   /// Probability with which importance from `w` is scattered with the normal `n`.
@@ -246,7 +302,8 @@ class Bsdf {
                                          Transport transport) const;
 
   V3f ng_, ns_;
-  bool flat_;  // ns equals ng, up to the rounding of an interpolated normal
+  bool flat_;           // ns equals ng, up to the rounding of an interpolated normal
+  V3f along_{0, 0, 0};  // direction of the wider facets, if needs_tangents()
   Lobes lobes_;
 };
 

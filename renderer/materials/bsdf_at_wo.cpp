@@ -1,5 +1,7 @@
 #include "renderer/materials/bsdf_at_wo.h"
 
+#include <array>
+
 namespace lacuna {
 
 BsdfAtWo::BsdfAtWo(const Bsdf& bsdf, const V3f& wo)
@@ -11,9 +13,21 @@ BsdfAtWo::BsdfAtWo(const Bsdf& bsdf, const V3f& wo)
       layered_(bsdf.lobes_.kind == Lobes::Kind::layered),
       layer_(bsdf.lobes_.layer),
       means_(layer_),
-      interface_(bsdf.lobes_.interface) {
+      interface_(bsdf.lobes_.interface),
+      extended_(bsdf.lobes_.kind == Lobes::Kind::layered && bsdf.lobes_.extended ? &bsdf
+                                                                                 : nullptr) {
   if (bsdf.lobes_.kind == Lobes::Kind::black || dot(wo, bsdf.ng_) == 0) factor = Rgb(0, 0, 0);
   if (layered_) through_o_ = layer_.let_through(layer_.mean_weight(cos_o_));
+}
+
+Float8x3 BsdfAtWo::one_by_one(const Float8x3& w) const {
+  alignas(32) std::array<float, 8> x, y, z;
+  w.x.store(x.data()), w.y.store(y.data()), w.z.store(z.data());
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Rgb f = extended_->eval(wo_, {x[i], y[i], z[i]}, Transport::radiance) * factor;
+    x[i] = f.x, y[i] = f.y, z[i] = f.z;
+  }
+  return {Float8::load(x.data()), Float8::load(y.data()), Float8::load(z.data())};
 }
 
 Float8x3 BsdfAtWo::layered(const Float8x3& w, Float8 cos_i) const {

@@ -10,9 +10,9 @@ V3f unit(const V3f& v) { return v * (1 / std::sqrt(v.length2())); }
 
 }  // namespace
 
-V3f ggx_sample_visible(const V3f& wo, float alpha, const V2f& u) {
+V3f ggx_sample_visible(const V3f& wo, const V2f& alpha, const V2f& u) {
   // Stretch so that the surface becomes a hemisphere.
-  const V3f v = unit({alpha * wo.x, alpha * wo.y, wo.z});
+  const V3f v = unit({alpha.x * wo.x, alpha.y * wo.y, wo.z});
   const float side2 = v.x * v.x + v.y * v.y;
   const V3f t1 = side2 > 0 ? V3f(-v.y, v.x, 0) / std::sqrt(side2) : V3f(1, 0, 0);
   const V3f t2 = cross(v, t1);
@@ -23,7 +23,7 @@ V3f ggx_sample_visible(const V3f& wo, float alpha, const V2f& u) {
   const float y = (1 - s) * across + s * d.y;
   const float z = std::sqrt(std::max(0.0F, 1 - d.x * d.x - y * y));
   const V3f n = d.x * t1 + y * t2 + z * v;
-  return unit({alpha * n.x, alpha * n.y, std::max(0.0F, n.z)});
+  return unit({alpha.x * n.x, alpha.y * n.y, std::max(0.0F, n.z)});
 }
 
 }  // namespace lacuna

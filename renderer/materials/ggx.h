@@ -6,8 +6,8 @@
 namespace lacuna {
 
 // The GGX distribution of facet normals with Smith's shadowing (Walter et al. 2007; Heitz 2014,
-// "Understanding the Masking-Shadowing Function"). Isotropic, width `alpha` in [ggx_min_alpha, 1].
-// Cosines are positive.
+// "Understanding the Masking-Shadowing Function"). Isotropic, width `alpha` in [ggx_min_alpha, 1];
+// facets.h has two widths. Cosines are positive.
 
 /// Lobes below this width are treated as smooth. A float direction has a rounding error of about
 /// 6e-8, 6e-4 of a lobe of this width: its density is still accurate to a fraction of a percent.
@@ -36,9 +36,10 @@ T ggx_slope_root(const T& cos, const A& alpha) {
   return sqrt(a2 + (1 - a2) * cos * cos);
 }
 
-/// Masking G1(w) / cos: finite at grazing angles.
+/// Masking G1(w) / cos: finite at grazing angles. `root` of w.
+inline float ggx_g1_over_cos_of_root(float cos, float root) { return 2 / (cos + root); }
 inline float ggx_g1_over_cos(float cos, float alpha) {
-  return 2 / (cos + ggx_slope_root(cos, alpha));
+  return ggx_g1_over_cos_of_root(cos, ggx_slope_root(cos, alpha));
 }
 
 /// Height-correlated masking and shadowing (Heitz 2014, eq. 99) over four times the first cosine:
@@ -47,10 +48,17 @@ template <class O, class T, class A>
 T ggx_g2_over_4cos(const O& cos_o, const T& cos_i, const A& alpha) {
   return 0.5F / (ggx_slope_root(cos_o, alpha) + cos_o * ggx_slope_root(cos_i, alpha) / cos_i);
 }
+/// The same from the slope roots of both directions.
+inline float ggx_g2_over_4cos_of_roots(float cos_o, float root_o, float cos_i, float root_i) {
+  return 0.5F / (root_o + cos_o * root_i / cos_i);
+}
 
 /// Samples a facet normal visible from `wo` in the local frame (normal along z, wo.z > 0), with
 /// density G1(wo) (wo.m) D(m) / wo.z (Heitz 2018, "Sampling the GGX Distribution of Visible
-/// Normals").
-V3f ggx_sample_visible(const V3f& wo, float alpha, const V2f& u);
+/// Normals"). `alpha`: the widths along x and y.
+V3f ggx_sample_visible(const V3f& wo, const V2f& alpha, const V2f& u);
+inline V3f ggx_sample_visible(const V3f& wo, float alpha, const V2f& u) {
+  return ggx_sample_visible(wo, V2f(alpha, alpha), u);
+}
 
 }  // namespace lacuna

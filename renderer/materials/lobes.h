@@ -3,6 +3,8 @@
 #include <cstdint>
 
 #include "renderer/core/vec.h"
+#include "renderer/geometry/medium.h"
+#include "renderer/materials/covers.h"
 #include "renderer/materials/interface.h"
 #include "renderer/materials/layer.h"
 
@@ -16,7 +18,18 @@ struct SurfaceParams {
   float ior = 1.5F;             ///< >= 1; of the inside
   Rgb f0{0.04F, 0.04F, 0.04F};  ///< dielectric reflectance at normal incidence
   float f90 = 1;
-  float transmission = 0;  ///< [0, 1]: refracting fraction of the dielectric's base
+  float transmission = 0;  ///< [0, 1]: transmitting fraction of the dielectric's base
+  bool solid = false;      ///< transmitted light is refracted into a solid; else a thin wall
+  const Medium* medium = nullptr;  ///< in the solid; null: none
+  float diffuse_transmission = 0;  ///< [0, 1]: share of Lambert's lobe on the other side
+  Rgb diffuse_transmission_color{1, 1, 1};
+  Rgb sheen_color{0, 0, 0};
+  float sheen_alpha = 0;  ///< [0, 1]
+  float coat = 0;         ///< [0, 1]
+  float coat_alpha = 0;   ///< [0, 1]
+  float alpha_along = 0;  ///< GGX width along `direction`, >= alpha; 0: the facets are isotropic
+  V2f direction{1, 0};    ///< unit, in the tangent frame
+  ThinFilm film = {};
 };
 
 /// The scattering of a surface without its normals. Computed once for all hits if the material has
@@ -27,7 +40,8 @@ struct Lobes {
   // Implicit: both types describe the same surface.
   Lobes(const SurfaceParams& params)
       : diffuse(((1 - params.metallic) * (1 - params.transmission)) * params.base_color) {
-    if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0)) {
+    if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0) ||
+        has_extensions(params)) {
       add_interface(params);
     } else {
       kind = is_black(diffuse) ? Kind::black : Kind::lambert;
@@ -37,17 +51,28 @@ struct Lobes {
   bool has_diffuse() const { return !is_black(diffuse); }
   /// Whether other lobes than the facets must be sampled, too.
   bool facets_compete() const {
-    return has_diffuse() || (interface.glass > 0 && interface.clear());
+    return has_diffuse() || (interface.glass > 0 && interface.clear()) || extended;
   }
   bool facets_transmit() const { return interface.glass > 0 && !interface.clear(); }
 
   Rgb diffuse;  ///< share of Lambert times base colour
   Kind kind = Kind::layered;
-  Layer layer;  ///< used if facets_compete()
+  bool extended = false;  ///< something below `interface` is used, or facets of two widths
+  Layer layer;            ///< used if facets_compete()
   Interface interface;
 
+  Rgb diffuse_through{0, 0, 0};  ///< Lambert's lobe on the other side: share times colour
+  Covers covers;
+  float alpha_along = 0;  ///< as in SurfaceParams
+  V2f direction{1, 0};
+  const Medium* medium = nullptr;  ///< behind the surface
+
  private:
+  static bool has_extensions(const SurfaceParams& p) {
+    return p.coat > 0 || p.diffuse_transmission > 0 || !is_black(p.sheen_color);
+  }
   void add_interface(const SurfaceParams& params);
+  void add_extensions(const SurfaceParams& params);
 };
 
 }  // namespace lacuna

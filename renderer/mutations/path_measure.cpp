@@ -22,6 +22,13 @@ bool make_edge(const Vertex& near_eye, const PathVertex& near_light, bool last, 
   return true;
 }
 
+/// The transmittance of the edge between x_i and x_{i+1}.
+Rgb passed(const WholePath& path, const VertexPool& pool, int i) {
+  const VertexPlace near_eye{pool[path.node(i).vertex].v},
+      near_light{pool[path.node(i + 1).vertex].v};
+  return transmittance(near_eye, near_light, edge_between(near_eye, near_light));
+}
+
 /// f |cos| at x_i, 0 < i < k, for radiance.
 Rgb scattered(const WholePath& path, const VertexPool& pool, int i) {
   const PathNode& node = path.node(i);
@@ -65,8 +72,11 @@ bool PathMeasure::evaluate(WholePath& path, const VertexPool& pool) const {
   long double scale =
       static_cast<long double>(camera_.density(first).value / pixels_) * path.edge(0).to_light;
   Rgb product = pool[path.nodes.back().vertex].emitter.towards(-path.edge(k - 1).w);
+  const bool absorbs = scene_.has_media();
+  if (absorbs) product *= passed(path, pool, 0);
   for (int i = 1; i < k; ++i) {
     product *= scattered(path, pool, i);
+    if (absorbs) product *= passed(path, pool, i);
     const float largest = max_component(product);
     if (!(largest > 0)) return false;
     product /= largest;

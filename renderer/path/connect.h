@@ -14,7 +14,8 @@ struct Connection {
   float distance2 = 1;    ///< squared length; 1 if the light's endpoint is at infinity
   float distance = 1;     ///< its root
   bool infinite = false;  ///< the light's endpoint is at infinity
-  /// scatter() of both endpoints over distance2: without MIS weight and visibility.
+  /// scatter() of both endpoints over distance2, times the transmittance: without MIS weight and
+  /// visibility.
   Rgb contribution{0, 0, 0};
   /// Density of w by the BSDF of the eye's endpoint; none: not evaluated yet.
   std::optional<Pdf<SolidAngle>> eye_bsdf_pdf;
@@ -45,6 +46,22 @@ Connection edge_between(const Eye& eye, const Light& light) {
   return c;
 }
 
+/// What absorbs at an endpoint in unit direction `w`; null: nothing.
+template <class End>
+const Medium* medium_at(const End& e, const V3f& w) {
+  if constexpr (requires { e.medium(w); }) return e.medium(w);
+  return nullptr;
+}
+
+/// The transmittance of the edge of length `c.distance`.
+template <class Eye, class Light>
+Rgb transmittance(const Eye& eye, const Light& light, const Connection& c) {
+  const Medium* const a = medium_at(eye, c.w);
+  const Medium* const b = medium_at(light, -c.w);
+  if (a == nullptr && b == nullptr) return Rgb(1, 1, 1);
+  return transmittance(a, b, c.infinite ? infinite_distance : c.distance);
+}
+
 /// Connects the endpoints `eye` and `light`. The result converts to false if the unoccluded
 /// contribution is black.
 template <class Eye, class Light>
@@ -60,6 +77,7 @@ Connection connect(const Eye& eye, const Light& light) {
     scattered = eye.scatter(c.w);
   }
   c.contribution = scattered * emitted / c.distance2;
+  c.contribution *= transmittance(eye, light, c);
   return c;
 }
 

@@ -26,6 +26,10 @@ struct VertexPlace {
   V3f end(const V3f& w, float distance) const {
     return offset_end(v.surface.x, v.surface.ng, v.surface.offset, w, distance);
   }
+  /// What absorbs in unit direction `w`; null: nothing. Requires the surface's BSDF.
+  const Medium* medium(const V3f& w) const {
+    return v.kind == Vertex::Kind::surface ? v.bsdf->medium(w) : nullptr;
+  }
 };
 
 /// A surface vertex: vertex `index` of its path.
@@ -69,6 +73,7 @@ struct SurfaceEndpoint {
   V3f origin(const V3f& w) const { return VertexPlace{v}.origin(w); }
   /// The end of a segment of length `distance` along -`w`, offset from the surface.
   V3f end(const V3f& w, float distance) const { return VertexPlace{v}.end(w, distance); }
+  const Medium* medium(const V3f& w) const { return v.bsdf->medium(w); }
 };
 
 /// A point on an emitter: vertex 0 of a light path.

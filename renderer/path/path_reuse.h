@@ -165,6 +165,7 @@ class PathReuse {
       const double area = double(abs_dot(v.surface.ng, c.w)) / double(c.distance2);
       e.density = density * area;
       e.carried = value * static_cast<float>(area);
+      e.carried *= transmittance(from, to, c);
       edges_.push_back(e);
       // From vertex 2: the rays have one origin, which makes them coherent.
       const V3f origin = to.origin(-c.w);

@@ -159,6 +159,7 @@ class Walk {
       }
     }
     const Vertex& before = vertex(w, depth - 1);
+    if (scene_.has_media()) absorb(w, before, v);
     v.p_fwd = to_area(w.p, before, w.ray.d, v);
     if (w.mis_partial > 0) {
       v.mis_partial = w.mis_partial * double(to_area(Pdf<SolidAngle>(1.0F), v, v.wp, before).value);
@@ -166,6 +167,19 @@ class Walk {
       v.mis_partial = 0;
     }
     v.prev_connectible = before.connectible();
+  }
+
+  /// Absorption along the edge from `before` to `v`.
+  void absorb(PathState& w, const Vertex& before, Vertex& v) const {
+    const bool infinite =
+        before.kind == Vertex::Kind::background || v.kind == Vertex::Kind::background;
+    const auto medium = [&](const Vertex& at, const V3f& along) {
+      return at.kind == Vertex::Kind::surface ? scene_.medium(at.surface, along) : nullptr;
+    };
+    w.throughput *=
+        transmittance(medium(before, w.ray.d), medium(v, v.wp),
+                      infinite ? infinite_distance : (v.surface.x - before.surface.x).length());
+    v.throughput = w.throughput;
   }
 
   bool scatters(int depth) const { return limits_.last_scatters || depth < limits_.max_depth; }

@@ -67,7 +67,7 @@ std::vector<std::string> hidden_emitters(const Scene& scene) {
       const V3f x = shape.at(u, v);
       const float beside = side * in_its_plane + 2 * ray_offset(x, shape.ng, shape.plane_error);
       if (!by) by = find_occluder(scene, triangle, x, shape.ng, side, beside);
-      if (!by && data.materials[mesh.material].double_sided) {
+      if (!by && data.materials[mesh.material].emits_behind()) {
         by = find_occluder(scene, triangle, x, -shape.ng, side, beside);
       }
     }

@@ -1,5 +1,6 @@
 #include "renderer/scene/scene.h"
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "renderer/core/scene_error.h"
 #include "renderer/geometry/alpha_mask.h"
 #include "renderer/geometry/surface_contact.h"
+#include "renderer/geometry/uv_tangents.h"
 #include "renderer/images/guards.h"
 #include "renderer/images/image_read.h"
 #include "renderer/materials/gltf_material.h"
@@ -34,6 +36,8 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
       bounds_(data_->bounds()),
       triangles_(*data_),
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool))) {
+  has_media_ = std::ranges::any_of(data_->materials,
+                                   [](const Material& m) { return m.medium() != nullptr; });
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     find_contacts(pool);
@@ -69,6 +73,12 @@ void Scene::make_uniform_lobes() {
     m.for_each_scattering_texture([&](const TextureRef&) { textured = true; });
     if (!textured) uniform_lobes_[i] = surface_params(m, {}, {});
   }
+}
+
+void Scene::set_tangents(const Surface& s, Bsdf& bsdf) const {
+  const auto [u, v] = uv_tangents(data_->meshes[s.mesh], s.triangle,
+                                  material(s).extensions.anisotropy.texture.uv_set);
+  bsdf.set_tangents(u, v);
 }
 
 void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {

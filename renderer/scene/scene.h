@@ -80,6 +80,13 @@ class Scene {
     } else {
       place.emplace(surface_params(material(s), data_->textures, s.uv), s.ng, s.ns);
     }
+    if (place->needs_tangents()) set_tangents(s, *place);
+  }
+  /// Whether some solid absorbs.
+  bool has_media() const { return has_media_; }
+  /// The medium that light crosses from `s` in direction `w`; null: none.
+  const Medium* medium(const Surface& s, const V3f& w) const {
+    return dot(w, s.ng) < 0 ? material(s).medium() : nullptr;
   }
   /// Prefetches the texels that make_bsdf() reads.
   void prefetch_bsdf(const Surface& s) const {
@@ -92,11 +99,13 @@ class Scene {
  private:
   void find_contacts(const ThreadPool& pool);
   void make_uniform_lobes();
+  void set_tangents(const Surface& s, Bsdf& bsdf) const;
   void decode_textures(const SceneNeeds& needs, const ThreadPool& pool);
 
   std::unique_ptr<SceneData> data_;  // on the heap: rays and emitters point into it
   Bounds bounds_;
   int textures_decoded_ = 0;
+  bool has_media_ = false;
   TriangleTable triangles_;
   std::vector<std::optional<Lobes>>
       uniform_lobes_;  // of each material; none if a texture affects its scattering

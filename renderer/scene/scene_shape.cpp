@@ -73,7 +73,7 @@ DomainSeeds domain_seeds(const SceneData& scene, const CameraData& camera, bool 
     if (!material.emits()) continue;
     for (const auto& t : m.triangles) {
       add_emitter(seeds, {V3d(m.positions[t[0]]), V3d(m.positions[t[1]]), V3d(m.positions[t[2]])},
-                  material.double_sided);
+                  material.emits_behind());
     }
   }
   seeds.from_infinity = environment;

@@ -144,7 +144,9 @@ Json metal(double roughness) {
 
 Json glass(double roughness) {
   return {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", roughness}}},
-          {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}};
+          {"extensions",
+           {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+            {"KHR_materials_volume", {{"thicknessFactor", 1}}}}}};
 }
 
 Bytes room(const Room& r) {

@@ -99,7 +99,13 @@ def materials():
          "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}},
         {"pbrMetallicRoughness": {"baseColorFactor": [.2, .5, .8, 1], "roughnessFactor": 0},
          "extensions": {"KHR_materials_ior": {"ior": 1.4}, "KHR_materials_transmission": {"transmissionFactor": .9},
-                        "KHR_materials_specular": {"specularFactor": .5, "specularColorFactor": [1, .9, .8]}}}]
+                        "KHR_materials_specular": {"specularFactor": .5, "specularColorFactor": [1, .9, .8]},
+                        "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, .5, 0]},
+                        "KHR_materials_clearcoat": {"clearcoatFactor": .5, "clearcoatTexture": texture(), "clearcoatRoughnessFactor": .2},
+                        "KHR_materials_sheen": {"sheenColorFactor": [.5, .4, .3], "sheenRoughnessFactor": .6},
+                        "KHR_materials_anisotropy": {"anisotropyStrength": .5, "anisotropyTexture": texture()},
+                        "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessTexture": texture()},
+                        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": .5, "diffuseTransmissionColorFactor": [1, .5, 0]}}}]
 
 
 def scene(buffer):

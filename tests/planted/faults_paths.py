@@ -125,9 +125,14 @@ FAULTS = [
           "probability(from.edge_count(), deleted_, added_, to_end_) / (deleted_ + 1);"),
     Fault("roulette of shadow rays is not undone", "renderer/mutations/path_space.cpp",
           "c.ratio = ratio / test_probability;", "c.ratio = ratio;"),
-    Fault("importance meets delta lobes in the wrong measure", "renderer/materials/bsdf.cpp",
+    Fault("importance meets delta lobes in the wrong measure", "renderer/materials/bsdf_sample.cpp",
           "double(frame_probability(lobe.wi, n)) * lobe.jacobian;",
           "double(frame_probability(lobe.wi, n));"),
+    # Absorption.
+    Fault("walks pass through media unweakened", "renderer/path/walk.h",
+          "if (scene_.has_media()) absorb(w, before, v);", ""),
+    Fault("connections pass through media unweakened", "renderer/path/connect.h",
+          "c.contribution *= transmittance(eye, light, c);", ""),
     # Merging.
     Fault("the area of the disc is its radius squared", "renderer/integrators/bdpt.cpp",
           "counts.merge = pixels * std::numbers::pi * radius * radius;",

@@ -377,7 +377,7 @@ TEST(Scenes, WhatIsLeftOutIsSaidOnce) {
   Json lines = primitive;
   lines["mode"] = 1;
   primitives = {primitive, lines, primitive};
-  b.json["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_materials_ior"};
+  b.json["extensionsUsed"] = {"KHR_materials_dispersion", "KHR_materials_ior"};
   b.json["skins"] = {{{"joints", {0}}}};
   b.add_node({{"mesh", 0}, {"skin", 0}});
   b.json["cameras"] = {{{"type", "orthographic"},
@@ -389,7 +389,7 @@ TEST(Scenes, WhatIsLeftOutIsSaidOnce) {
   EXPECT_EQ(scene.triangle_count(), 4U);
   EXPECT_TRUE(scene.cameras.empty());
   for (const std::string what : {"COLOR_0", "JOINTS_0 or WEIGHTS_0", "points or lines",
-                                 "KHR_materials_clearcoat", "orthographic", "animations"}) {
+                                 "KHR_materials_dispersion", "orthographic", "animations"}) {
     EXPECT_EQ(
         std::count_if(scene.warnings.begin(), scene.warnings.end(),
                       [&](const std::string& w) { return w.find(what) != std::string::npos; }),

@@ -66,7 +66,24 @@ TEST(MaterialsLoading, EveryFieldArrives) {
         {{"KHR_materials_emissive_strength", {{"emissiveStrength", 10000000000}}},
          {"KHR_materials_ior", {{"ior", 0}}},
          {"KHR_materials_specular", {{"specularFactor", 0.8}, {"specularColorFactor", {2, 3, 4}}}},
-         {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}}));
+         {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 0.1},
+           {"attenuationDistance", 0.5},
+           {"attenuationColor", {1, 0.5, 0}}}},
+         {"KHR_materials_diffuse_transmission",
+          {{"diffuseTransmissionFactor", 0.1},
+           {"diffuseTransmissionColorFactor", {0.2, 0.3, 0.4}}}},
+         {"KHR_materials_clearcoat",
+          {{"clearcoatFactor", 0.11}, {"clearcoatRoughnessFactor", 0.12}}},
+         {"KHR_materials_sheen",
+          {{"sheenColorFactor", {0.5, 0.6, 0.7}}, {"sheenRoughnessFactor", 0.13}}},
+         {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.14}, {"anisotropyRotation", -1.5}}},
+         {"KHR_materials_iridescence",
+          {{"iridescenceFactor", 0.15},
+           {"iridescenceIor", 1.6},
+           {"iridescenceThicknessMinimum", 50},
+           {"iridescenceThicknessMaximum", 350}}}}}}));
   const Material& m = scene.materials.at(0);
   EXPECT_EQ(m.name, "all");
   EXPECT_EQ(m.base_color, Rgb(0.1F, 0.2F, 0.3F));
@@ -81,6 +98,63 @@ TEST(MaterialsLoading, EveryFieldArrives) {
   EXPECT_EQ(m.specular, 0.8F);
   EXPECT_EQ(m.specular_color, Rgb(2, 3, 4));
   EXPECT_EQ(m.transmission, 0.9F);
+  const MaterialExtensions& e = m.extensions;
+  EXPECT_TRUE(e.volume.solid);
+  EXPECT_EQ(e.volume.inside.extinction.x, 0.0F);
+  EXPECT_NEAR(e.volume.inside.extinction.y, std::log(2) / 0.5, 1e-6);
+  EXPECT_GT(e.volume.inside.extinction.z, 100) << "black absorbs all";
+  EXPECT_EQ(m.medium(), &e.volume.inside);
+  EXPECT_EQ(e.diffuse_transmission.factor, 0.1F);
+  EXPECT_EQ(e.diffuse_transmission.color, Rgb(0.2F, 0.3F, 0.4F));
+  EXPECT_EQ(e.coat.factor, 0.11F);
+  EXPECT_EQ(e.coat.roughness, 0.12F);
+  EXPECT_EQ(e.sheen.color, Rgb(0.5F, 0.6F, 0.7F));
+  EXPECT_EQ(e.sheen.roughness, 0.13F);
+  EXPECT_EQ(e.anisotropy.strength, 0.14F);
+  EXPECT_EQ(e.anisotropy.rotation, -1.5F);
+  EXPECT_EQ(e.iridescence.factor, 0.15F);
+  EXPECT_EQ(e.iridescence.ior, 1.6F);
+  EXPECT_EQ(e.iridescence.thinnest, 50.0F);
+  EXPECT_EQ(e.iridescence.thickest, 350.0F);
+}
+
+TEST(MaterialsLoading, ExtensionsAreOffWithoutTheirFactor) {
+  Json extensions;
+  for (const char* name : {"volume", "diffuse_transmission", "clearcoat", "sheen", "anisotropy",
+                           "iridescence", "transmission"}) {
+    extensions[std::string("KHR_materials_") + name] = Json::object();
+  }
+  const auto scene = load(quad_with({{"name", "default"}, {"extensions", extensions}}));
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_EQ(scene.materials.at(0), scene.materials.at(1));
+}
+
+TEST(MaterialsLoading, ASolidByANote) {
+  const auto is_solid = [](const Json& extras) {
+    const auto scene = load(quad_with({{"extras", extras}}));
+    return scene.materials.at(0).extensions.volume.solid;
+  };
+  EXPECT_TRUE(is_solid({{"source", "smooth dielectric ior 1.5"}}));
+  EXPECT_FALSE(is_solid({{"source", "diffuse"}}));
+  EXPECT_FALSE(is_solid({{"source", 1}}));
+  EXPECT_FALSE(is_solid("smooth dielectric"));
+  EXPECT_FALSE(is_solid(nullptr));
+}
+
+TEST(MaterialsLoading, AMediumNeedsASolidThatLightEnters) {
+  const auto absorbs = [](double transmission, double thickness) {
+    const auto scene =
+        load(quad_with({{"extensions",
+                         {{"KHR_materials_transmission", {{"transmissionFactor", transmission}}},
+                          {"KHR_materials_volume",
+                           {{"thicknessFactor", thickness},
+                            {"attenuationDistance", 1},
+                            {"attenuationColor", {0.5, 0.5, 0.5}}}}}}}));
+    return scene.materials.at(0).medium() != nullptr;
+  };
+  EXPECT_TRUE(absorbs(1, 1));
+  EXPECT_FALSE(absorbs(0, 1));
+  EXPECT_FALSE(absorbs(1, 0)) << "a thin wall";
 }
 
 TEST(MaterialsLoading, OneImageReadInTwoWaysBecomesTwoTextures) {

@@ -15,10 +15,25 @@ struct Surface {
   std::string name;
   SurfaceParams params;
 
-  bool opaque() const { return params.transmission == 0 || params.metallic == 1; }
+  bool opaque() const {
+    return (params.transmission == 0 && params.diffuse_transmission == 0) || params.metallic == 1;
+  }
 };
 
-/// Reflectances as KHR_materials_ior gives them.
+/// Index of refraction behind the surface, as far as light that passes is refracted.
+inline float index_behind(const SurfaceParams& p) {
+  return p.solid && p.transmission * (1 - p.metallic) > 0 ? p.ior : 1.0F;
+}
+
+/// With a tangent frame, for surfaces whose facets have two widths.
+inline Bsdf bsdf(const SurfaceParams& params, const V3f& ng, const V3f& ns) {
+  Bsdf result(params, ng, ns);
+  const Frame frame(ng);
+  result.set_tangents(frame.s, frame.t);
+  return result;
+}
+
+/// Reflectances as KHR_materials_ior gives them; what is transmitted is refracted.
 inline SurfaceParams dielectric(const Rgb& base, float alpha, float ior, float transmission) {
   SurfaceParams p;
   p.base_color = base;
@@ -27,6 +42,35 @@ inline SurfaceParams dielectric(const Rgb& base, float alpha, float ior, float t
   const float f0 = normal_reflectance(ior);
   p.f0 = Rgb(f0, f0, f0);
   p.transmission = transmission;
+  p.solid = true;
+  return p;
+}
+inline SurfaceParams thin(SurfaceParams p) {
+  p.solid = false;
+  return p;
+}
+inline SurfaceParams leaf(SurfaceParams p, float share) {
+  p.diffuse_transmission = share;
+  p.diffuse_transmission_color = Rgb(0.9F, 0.6F, 0.3F);
+  return p;
+}
+inline SurfaceParams coated(SurfaceParams p, float coat, float alpha) {
+  p.coat = coat;
+  p.coat_alpha = alpha;
+  return p;
+}
+inline SurfaceParams cloth(SurfaceParams p, const Rgb& color, float alpha) {
+  p.sheen_color = color;
+  p.sheen_alpha = alpha;
+  return p;
+}
+inline SurfaceParams brushed(SurfaceParams p, float alpha_along) {
+  p.alpha_along = alpha_along;
+  p.direction = V2f(0.6F, 0.8F);
+  return p;
+}
+inline SurfaceParams filmed(SurfaceParams p, float strength, float thickness) {
+  p.film = {strength, 1.3F, thickness};
   return p;
 }
 inline SurfaceParams lambert(const Rgb& base) {
@@ -56,6 +100,23 @@ inline SurfaceParams layer(SurfaceParams p, const Rgb& f0, float f90) {
 inline std::vector<Surface> surfaces() {
   const Rgb white(1, 1, 1), black(0, 0, 0), orange(0.8F, 0.5F, 0.2F);
   return {
+      {"window_smooth", thin(dielectric(orange, 0, 1.5F, 1))},
+      {"window_alpha_02", thin(dielectric(white, 0.2F, 1.5F, 1))},
+      {"half_window", thin(dielectric(orange, 1, 1, 0.5F))},
+      {"leaf", leaf(lambert(white), 0.4F)},
+      {"wax", leaf(dielectric(white, 0.2F, 1.5F, 0.5F), 0.5F)},
+      {"coated_metal", coated(metal(white, 0.3F), 1, 0)},
+      {"coated_mirror", coated(metal(orange, 0), 0.7F, 0)},
+      {"coated_plastic", coated(leaf(dielectric(white, 0, 1.5F, 0), 1), 0.8F, 0.2F)},
+      {"coated_glass", coated(dielectric(white, 0.2F, 1.5F, 1), 1, 0.4F)},
+      {"cloth", cloth(lambert(white), white, 0.3F)},
+      {"coated_cloth", coated(cloth(dielectric(orange, 0.3F, 1.5F, 0), orange, 0.05F), 1, 0.1F)},
+      {"brushed_metal", brushed(metal(white, 0.05F), 0.4F)},
+      {"brushed_plastic", brushed(dielectric(white, 0.1F, 1.5F, 0), 1)},
+      {"brushed_glass", brushed(dielectric(white, 0.1F, 1.5F, 1), 0.3F)},
+      {"soap_plastic", filmed(dielectric(white, 0.2F, 1.5F, 0), 1, 400)},
+      {"soap_glass", filmed(dielectric(white, 0.2F, 1.5F, 1), 0.8F, 300)},
+      {"soap_metal", filmed(metal(orange, 0.2F), 1, 500)},
       {"lambert_white", lambert(white)},
       {"lambert_orange", lambert(orange)},
       {"black", lambert(black)},

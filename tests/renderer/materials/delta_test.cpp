@@ -38,7 +38,8 @@ TEST(Delta, ProbabilitiesAreThoseOfSampling) {
   int lobes = 0, refracted = 0;
   for (const cases::Surface& surface : cases::surfaces()) {
     for (const float tilt : {1.0F, 0.9F}) {
-      const Bsdf bsdf(surface.params, slanted_normal, cases::direction(slanted_normal, tilt, 1));
+      const Bsdf bsdf =
+          cases::bsdf(surface.params, slanted_normal, cases::direction(slanted_normal, tilt, 1));
       for (const float cos : {0.9F, 0.3F, -0.6F}) {
         for (const bool transmitted : {false, true}) {
           const V3f wo = cases::direction(slanted_normal, cos, 2);

@@ -38,7 +38,7 @@ TEST_P(Energy, IsNotCreated) {
   std::uint64_t stream = 1000 + GetParam() * 100;
   for (const cases::View& v : views()) {
     if (!v.flat() && !surface_.opaque()) continue;
-    const Bsdf bsdf(surface_.params, v.ng, v.ns);
+    const Bsdf bsdf = cases::bsdf(surface_.params, v.ng, v.ns);
     const Furnace furnace(bsdf, v.wo, v.flat() ? Transport::importance : Transport::radiance, 20000,
                           ++stream);
     for (const statistics::Moments& m : furnace.weight) {

@@ -30,7 +30,7 @@ constexpr std::array<float, 7> numbers{0, 0x1p-24F, 0.25F, 0.5F, 0.5F + 0x1p-23F
 
 void check_everywhere(const SurfaceParams& params, const std::vector<V3f>& directions,
                       const V3f& ng, const V3f& ns) {
-  const Bsdf bsdf(params, ng, ns);
+  const Bsdf bsdf = cases::bsdf(params, ng, ns);
   ASSERT_TRUE(sound(bsdf.albedo()));
   for (const V3f& wo : directions) {
     for (const V3f& w : directions) {

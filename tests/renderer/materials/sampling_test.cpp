@@ -40,12 +40,14 @@ class Regions {
  private:
   /// By `n`, an eye in direction `wo` sees a mirror image in front of the surface.
   bool mirror_stays(const SurfaceParams& p, const V3f& wo, const V3f& n) const {
-    const bool opaque = p.transmission * (1 - p.metallic) == 0;
+    const bool opaque = (p.transmission + p.diffuse_transmission) * (1 - p.metallic) == 0;
     return !opaque || p.f90 + p.metallic == 0 || dot(reflect(wo, n), up_) > 0;
   }
   void add(const SurfaceParams& p, const V3f& wo, const V3f& n, bool front) {
-    const double width = p.f90 + p.metallic > 0 && p.alpha >= ggx_min_alpha ? p.alpha : 1.0F;
-    const float eta = front ? p.ior : 1 / p.ior;
+    double width = p.f90 + p.metallic > 0 && p.alpha >= ggx_min_alpha ? p.alpha : 1.0F;
+    if (p.coat > 0 && p.coat_alpha > 0) width = std::min(width, double(p.coat_alpha));
+    const float index = cases::index_behind(p);
+    const float eta = front ? index : 1 / index;
     const Fresnel f = fresnel_dielectric(dot(wo, n), eta);
     poles_.push_back(reflect(wo, n).normalized());
     // Beyond the critical angle only tilted facets refract, along the surface.
@@ -53,7 +55,8 @@ class Regions {
                              : refract(wo, n, eta, f.cos_t).normalized());
     grids_.emplace_back(poles_[poles_.size() - 2], width);
     // A tilted facet turns the refracted direction the less, the closer eta is to 1.
-    grids_.emplace_back(poles_.back(), width * std::clamp(std::abs(eta - 1.0), 1e-3, 1.0));
+    const double turn = p.solid ? std::clamp(std::abs(eta - 1.0), 1e-3, 1.0) : 1.0;
+    grids_.emplace_back(poles_.back(), width * turn);
   }
 
   V3f up_;
@@ -82,7 +85,7 @@ TEST_P(Sampling, FollowsPdf) {
       if (transport == Transport::importance && v.flat()) continue;
       if (too_thin_for_floats(surface_.params, v)) continue;
       SCOPED_TRACE(v.name + (transport == Transport::radiance ? " radiance" : " importance"));
-      const Bsdf bsdf(surface_.params, v.ng, v.ns);
+      const Bsdf bsdf = cases::bsdf(surface_.params, v.ng, v.ns);
       Rng random = cases::rng(++stream);
       const auto draw = [&]() -> std::optional<V3f> {
         const auto s = cases::sample(bsdf, v.wo, random, transport);
@@ -102,7 +105,7 @@ TEST_P(Sampling, WeightIsEvalOverPdf) {
   std::uint64_t stream = GetParam();
   for (const cases::View& v : views()) {
     SCOPED_TRACE(v.name);
-    const Bsdf bsdf(surface_.params, v.ng, v.ns);
+    const Bsdf bsdf = cases::bsdf(surface_.params, v.ng, v.ns);
     Rng random = cases::rng(++stream);
     for (const Transport transport : both_transports) {
       for (int i = 0; i < 500; ++i) {
@@ -126,7 +129,7 @@ TEST_P(Sampling, WeightIsEvalOverPdf) {
 TEST_P(Sampling, CoversAllThatScatters) {
   std::uint64_t stream = GetParam();
   for (const cases::View& v : views()) {
-    const Bsdf bsdf(surface_.params, v.ng, v.ns);
+    const Bsdf bsdf = cases::bsdf(surface_.params, v.ng, v.ns);
     Rng random = cases::rng(++stream);
     for (int i = 0; i < 2000; ++i) {
       const V3f wi = cases::uniform_direction(random);

@@ -25,11 +25,19 @@ inline Material metal(const Rgb& colour, float roughness) {
   m.roughness = roughness;
   return m;
 }
+/// A solid.
 inline Material glass(float roughness = 0) {
   Material m;
   m.metallic = 0;
   m.roughness = roughness;
   m.transmission = 1;
+  m.extensions.volume.solid = true;
+  return m;
+}
+/// A thin wall.
+inline Material window(float roughness = 0) {
+  Material m = glass(roughness);
+  m.extensions.volume.solid = false;
   return m;
 }
 /// Diffuse under a coat; smooth: a delta lobe and another one.
