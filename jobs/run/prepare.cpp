@@ -106,6 +106,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
   add(hidden_emitters(scene));
   add(lights_in_surfaces(scene));
   add(nested_solids(scene));
+  add(camera_in_solid(scene, camera));
   if (from_lights_only(integrator)) add(missing_reflections(scene, camera));
   return all;
 }

@@ -2,31 +2,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace lacuna {
 namespace {
 
-constexpr std::size_t most_meshes = 4096;
+constexpr int most_meshes = 4096;
 constexpr int most_hits = 256;  // of one ray
 
-bool refracts(const SceneData& data, std::uint32_t mesh) {
-  const Material& m = data.materials[data.meshes[mesh].material];
+bool refracts(const Material& m) {
   return m.extensions.volume.solid && m.transmission > 0 && m.metallic < 1;
 }
+const Material& material_of(const SceneData& data, std::uint32_t mesh) {
+  return data.materials[data.meshes[mesh].material];
+}
 
-/// The mesh of a solid around the outside of `mesh`: a ray outwards leaves it without having
-/// entered one.
-std::optional<std::uint32_t> solid_around(const Scene& scene, std::uint32_t mesh) {
-  const TriangleShape& start = scene.triangle(mesh, 0);
-  V3f x = start.at(0.3F, 0.4F);
-  const V3f w = start.ng;
-  x = offset_origin(x, w, ray_offset(x, w, start.plane_error), w);
+/// The mesh of a solid around the point `x`: a ray along unit `w` leaves it without having entered
+/// one.
+std::optional<std::uint32_t> solid_around(const Scene& scene, V3f x, const V3f& w) {
   int entered = 0;
   Hit hit;
   for (int i = 0; i < most_hits && scene.rays().intersect({x, w}, hit); ++i) {
     const Surface s = scene.surface({x, w}, hit);
-    if (refracts(scene.data(), hit.mesh)) {
+    const Material& m = material_of(scene.data(), hit.mesh);
+    if (refracts(m) || m.medium() != nullptr) {
       entered += dot(w, s.ng) < 0 ? 1 : -1;
       if (entered < 0) return hit.mesh;
     }
@@ -35,27 +35,69 @@ std::optional<std::uint32_t> solid_around(const Scene& scene, std::uint32_t mesh
   return std::nullopt;
 }
 
+/// The same around the outside of a mesh.
+std::optional<std::uint32_t> solid_around(const Scene& scene, std::uint32_t mesh) {
+  const TriangleShape& start = scene.triangle(mesh, 0);
+  const V3f x = start.at(0.3F, 0.4F);
+  return solid_around(
+      scene, offset_origin(x, start.ng, ray_offset(x, start.ng, start.plane_error), start.ng),
+      start.ng);
+}
+
+/// Meshes in solids, and an example.
+struct Nested {
+  int count = 0;
+  std::string first;
+
+  void add(const SceneData& data, std::uint32_t mesh, std::uint32_t around) {
+    if (count++ > 0) return;
+    first = fmt::format("\"{}\" in \"{}\"", data.meshes[mesh].name, data.meshes[around].name);
+  }
+};
+
 }  // namespace
 
 std::vector<std::string> nested_solids(const Scene& scene) {
   const SceneData& data = scene.data();
-  std::vector<std::uint32_t> solids;
-  for (std::uint32_t m = 0; m < data.meshes.size() && solids.size() < most_meshes; ++m) {
-    if (refracts(data, m)) solids.push_back(m);
-  }
-  if (solids.size() < 2) return {};
-  int nested = 0;
-  std::string first;
-  for (const std::uint32_t m : solids) {
+  Nested solids, others;
+  int tested_solids = 0, tested_others = 0;
+  const bool any = std::ranges::any_of(data.materials, refracts);
+  for (std::uint32_t m = 0; any && m < data.meshes.size(); ++m) {
+    const bool solid = refracts(material_of(data, m));
+    if (!solid && !scene.has_media()) continue;
+    if (++(solid ? tested_solids : tested_others) > most_meshes) continue;
     const std::optional<std::uint32_t> around = solid_around(scene, m);
-    if (!around || nested++ > 0) continue;
-    first = fmt::format("mesh \"{}\" in \"{}\"", data.meshes[m].name, data.meshes[*around].name);
+    if (!around) continue;
+    if (solid) {
+      solids.add(data, m, *around);
+    } else if (material_of(data, *around).medium() != nullptr) {
+      others.add(data, m, *around);
+    }
   }
-  if (nested == 0) return {};
+  std::vector<std::string> warnings;
+  if (solids.count > 0) {
+    warnings.push_back(
+        fmt::format("{} transmitting meshes lie in other solids, first {}: light between them is "
+                    "refracted as if air were there",
+                    solids.count, solids.first));
+  }
+  if (others.count > 0) {
+    warnings.push_back(fmt::format(
+        "{} meshes lie in solids that absorb, first {}: light from one of them to another, or back "
+        "to itself, is not weakened",
+        others.count, others.first));
+  }
+  return warnings;
+}
+
+std::vector<std::string> camera_in_solid(const Scene& scene, const Camera& camera) {
+  if (!scene.has_media()) return {};
+  const auto around = solid_around(scene, camera.position(), V3f(0.6F, 0, 0.8F));
+  if (!around || material_of(scene.data(), *around).medium() == nullptr) return {};
   return {
-      fmt::format("{} transmitting meshes lie in other solids, first {}: light between them is "
-                  "refracted as if air were there",
-                  nested, first)};
+      fmt::format("the camera lies in the solid \"{}\", which absorbs: light to it from other "
+                  "meshes in there is not weakened",
+                  scene.data().meshes[*around].name)};
 }
 
 }  // namespace lacuna
