@@ -17,7 +17,7 @@ SceneData boxes(const Material& outer, const Material& inner, float x) {
   p.eye({0, 0, 1.5}, {0, 0, 0}, 1);
   return std::move(p.data);
 }
-std::vector<std::string> warnings(const Material& outer, const Material& inner, float x) {
+std::vector<std::string> warnings_of_boxes(const Material& outer, const Material& inner, float x) {
   return nested_solids(test::lit_scene(boxes(outer, inner, x)));
 }
 
@@ -27,19 +27,19 @@ Material absorbing(Material m) {
 }
 
 TEST(NestedSolids, AreWarnedOf) {
-  const auto said = warnings(test::glass(), test::glass(), 0);
+  const auto said = warnings_of_boxes(test::glass(), test::glass(), 0);
   ASSERT_EQ(said.size(), 1U);
   EXPECT_TRUE(said[0].starts_with("6 transmitting meshes lie in other solids")) << said[0];
 }
 
 TEST(NestedSolids, OthersAreNot) {
-  EXPECT_TRUE(warnings(test::glass(), test::glass(), 5).empty()) << "side by side";
-  EXPECT_TRUE(warnings(test::glass(), test::window(), 0).empty());
-  EXPECT_TRUE(warnings(test::glass(), test::metal(Rgb(0.9F), 0.2F), 0).empty());
+  EXPECT_TRUE(warnings_of_boxes(test::glass(), test::glass(), 5).empty()) << "side by side";
+  EXPECT_TRUE(warnings_of_boxes(test::glass(), test::window(), 0).empty());
+  EXPECT_TRUE(warnings_of_boxes(test::glass(), test::metal(Rgb(0.9F), 0.2F), 0).empty());
 }
 
 TEST(NestedSolids, MeshesThatSolidsAbsorbAround) {
-  const auto said = warnings(absorbing(test::glass()), test::metal(Rgb(0.9F), 0.2F), 0);
+  const auto said = warnings_of_boxes(absorbing(test::glass()), test::metal(Rgb(0.9F), 0.2F), 0);
   ASSERT_EQ(said.size(), 1U);
   EXPECT_TRUE(said[0].starts_with("12 meshes lie in solids that absorb")) << said[0];
 }
