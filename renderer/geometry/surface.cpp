@@ -11,7 +11,9 @@ bool uses_textures(const Material& m) {
 }
 
 /// Moves `s`, in the coordinates of a prototype but for its point, to the scene.
-void place(Surface& s, const Instance& instance, const TriangleShape& placed) {
+void place(Surface& s, const SceneData& scene, const Hit& hit, const TriangleShape& placed) {
+  const Instance& instance = scene.instances[hit.instance];
+  s.instance = hit.instance;
   const bool smooth = s.ns != s.ng;
   const V3f n = instance.normal(s.ns);
   s.ng = placed.ng;
@@ -25,14 +27,14 @@ Surface Surface::of_instance(const SceneData& scene, const TriangleTable& table,
                              const Hit& hit) {
   const TriangleShape placed = placed_triangle(scene, table, hit);
   Surface s(scene, table, hit, placed.at(ray, hit.u, hit.v));
-  place(s, scene.instances[hit.instance], placed);
+  place(s, scene, hit, placed);
   return s;
 }
 
 Surface Surface::of_instance(const SceneData& scene, const TriangleTable& table, const Hit& hit,
                              const V3f& x) {
   Surface s(scene, table, hit, x);
-  place(s, scene.instances[hit.instance], placed_triangle(scene, table, hit));
+  place(s, scene, hit, placed_triangle(scene, table, hit));
   return s;
 }
 

@@ -77,6 +77,7 @@ struct Surface {
   std::uint32_t mesh = 0;
   std::uint32_t triangle = 0;
   std::uint32_t material = 0;
+  std::uint32_t instance = no_instance;  ///< index into SceneData::instances, if `mesh` is of one
   bool emits = false, emits_behind = false;
 
   Surface() = default;

@@ -35,9 +35,23 @@ std::optional<std::uint32_t> solid_around(const Scene& scene, V3f x, const V3f& 
   return std::nullopt;
 }
 
-/// The same around the outside of a mesh.
-std::optional<std::uint32_t> solid_around(const Scene& scene, std::uint32_t mesh) {
-  const TriangleShape& start = scene.triangle(mesh, 0);
+/// The first triangle of each mesh, in all of its instances.
+template <class Use>
+void for_each_mesh(const SceneData& data, Use&& use) {
+  Hit first{};
+  for (; first.mesh < data.placed_meshes().size(); ++first.mesh) use(first);
+  for (first.instance = 0; first.instance < data.instances.size(); ++first.instance) {
+    const Prototype& p = data.prototypes[data.instances[first.instance].prototype];
+    for (std::uint32_t k = 0; k < p.mesh_count; ++k) {
+      first.mesh = p.first_mesh + k;
+      use(first);
+    }
+  }
+}
+
+/// The same around the outside of a mesh, by a triangle of it.
+std::optional<std::uint32_t> solid_around(const Scene& scene, const Hit& of) {
+  const TriangleShape start = scene.triangle(of);
   const V3f x = start.at(0.3F, 0.4F);
   return solid_around(
       scene, offset_origin(x, start.ng, ray_offset(x, start.ng, start.plane_error), start.ng),
@@ -61,19 +75,19 @@ std::vector<std::string> nested_solids(const Scene& scene) {
   const SceneData& data = scene.data();
   Nested solids, others;
   int tested_solids = 0, tested_others = 0;
-  const bool any = std::ranges::any_of(data.materials, refracts);
-  for (std::uint32_t m = 0; any && m < data.meshes.size(); ++m) {
-    const bool solid = refracts(material_of(data, m));
-    if (!solid && !scene.has_media()) continue;
-    if (++(solid ? tested_solids : tested_others) > most_meshes) continue;
-    const std::optional<std::uint32_t> around = solid_around(scene, m);
-    if (!around) continue;
+  if (std::ranges::none_of(data.materials, refracts)) return {};
+  for_each_mesh(data, [&](const Hit& of) {
+    const bool solid = refracts(material_of(data, of.mesh));
+    if (!solid && !scene.has_media()) return;
+    if (++(solid ? tested_solids : tested_others) > most_meshes) return;
+    const std::optional<std::uint32_t> around = solid_around(scene, of);
+    if (!around) return;
     if (solid) {
-      solids.add(data, m, *around);
+      solids.add(data, of.mesh, *around);
     } else if (material_of(data, *around).medium() != nullptr) {
-      others.add(data, m, *around);
+      others.add(data, of.mesh, *around);
     }
-  }
+  });
   std::vector<std::string> warnings;
   if (solids.count > 0) {
     warnings.push_back(

@@ -76,8 +76,14 @@ void Scene::make_uniform_lobes() {
 }
 
 void Scene::set_tangents(const Surface& s, Bsdf& bsdf) const {
-  const auto [u, v] = uv_tangents(data_->meshes[s.mesh], s.triangle,
-                                  material(s).extensions.anisotropy.texture.uv_set);
+  auto [u, v] = uv_tangents(data_->meshes[s.mesh], s.triangle,
+                            material(s).extensions.anisotropy.texture.uv_set);
+  if (s.instance != no_instance) {
+    const auto& axes = data_->instances[s.instance].axes;
+    for (V3f* t : {&u, &v}) {
+      *t = (t->x * axes[0] + t->y * axes[1] + t->z * axes[2]).normalized();
+    }
+  }
   bsdf.set_tangents(u, v);
 }
 
