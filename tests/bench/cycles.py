@@ -58,7 +58,9 @@ def scattering(tree, material, base, base_value):
     pbr = material.get("pbrMetallicRoughness", {})
     metallic, roughness = pbr.get("metallicFactor", 1.0), pbr.get("roughnessFactor", 1.0)
     transmission = extension(material, "materials_transmission").get("transmissionFactor", 0)
-    if transmission == 1 and roughness == 0:
+    solid = (extension(material, "materials_volume").get("thicknessFactor", 0) > 0
+             or material.get("extras", {}).get("source", "").startswith("smooth dielectric"))
+    if transmission == 1 and roughness == 0 and solid:
         node = tree.nodes.new("ShaderNodeBsdfGlass")
         node.inputs["IOR"].default_value = extension(material, "materials_ior").get("ior", 1.5)
         node.inputs["Roughness"].default_value = 0
