@@ -111,9 +111,30 @@ void check_crop(const JobSpec& spec, std::vector<Problem>& problems) {
   }
 }
 
+/// What belongs to another kind of camera would be left out silently.
+void check_projection(const CameraSettings& camera, PixelFilter filter,
+                      std::vector<Problem>& problems) {
+  if (camera.type != Projection::perspective && camera.aperture > 0) {
+    problems.push_back(
+        {"/camera/aperture",
+         fmt::format("found {} with type \"{}\"; allowed: 0, or type \"perspective\"",
+                     camera.aperture, enum_name(camera.type))});
+  }
+  if (camera.blades == 1 || camera.blades == 2) {
+    problems.push_back(
+        {"/camera/blades", fmt::format("found {}; allowed: 0, or 3 to 64", camera.blades)});
+  }
+  if (camera.type == Projection::panorama && filter != PixelFilter::box) {
+    problems.push_back({"/pixel_filter", fmt::format("found \"{}\" with a panorama; allowed: "
+                                                     "\"box\"",
+                                                     enum_name(filter))});
+  }
+}
+
 void check_camera(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!spec.camera.object || !is_good(problems, "/camera")) return;
   const CameraSettings& camera = *spec.camera.object;
+  check_projection(camera, spec.pixel_filter, problems);
   if (frame_of(camera)) return;
   CameraSettings upright = camera, sideways = camera;
   upright.up = {0, 1, 0}, sideways.up = {1, 0, 0};
