@@ -61,13 +61,26 @@ std::optional<SurfaceContact> Scene::find_contact(const V3f& x) const {
   return lacuna::find_contact({*data_, rays_, bounds_}, x);
 }
 
+Rgb Scene::vertex_color(const Surface& s) const {
+  const Mesh& mesh = data_->meshes[s.mesh];
+  const V4f c = mesh.mix(mesh.colors, s.triangle, barycentric(s));
+  return {c.x, c.y, c.z};
+}
+
+float Scene::blended_coverage(const Surface& s) const {
+  const Mesh& mesh = data_->meshes[s.mesh];
+  if (!AlphaMask::needed(*data_, mesh)) return 1;
+  constexpr float least = 0x1p-20F;  // where rounding moves a hit to a point of alpha 0
+  return std::max(least, AlphaMask(*data_, mesh).coverage(s.triangle, barycentric(s)));
+}
+
 void Scene::make_uniform_lobes() {
   uniform_lobes_.resize(data_->materials.size());
   for (std::size_t i = 0; i < data_->materials.size(); ++i) {
     const Material& m = data_->materials[i];
-    bool textured = false;
-    m.for_each_scattering_texture([&](const TextureRef&) { textured = true; });
-    if (!textured) uniform_lobes_[i] = surface_params(m, {}, {});
+    bool varies = m.vertex_colors;
+    m.for_each_scattering_texture([&](const TextureRef&) { varies = true; });
+    if (!varies) uniform_lobes_[i] = surface_params(m, {}, {});
   }
 }
 
@@ -80,7 +93,9 @@ void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
     const Material& m = data_->materials[mesh.material];
     if (AlphaMask::needed(*data_, mesh)) want(m.base_color_texture);
     if (needs.emission && m.emits()) want(m.emission_texture);
-    if (needs.materials) m.for_each_scattering_texture(want);
+    if (!needs.materials) continue;
+    m.for_each_scattering_texture(want);
+    want(m.normal_texture);
   }
   std::vector<Texture*> small;
   std::vector<Texture*> large;
