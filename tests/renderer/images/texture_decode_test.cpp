@@ -91,7 +91,7 @@ TEST(TextureDecode, JpegsOfOneAndThreeChannels) {
 TEST(TextureDecode, OtherFormatsAreRefusedUnseen) {
   const std::vector<std::string> files{"GIF89a",
                                        "8BPS",
-                                       std::string("RIFF\x1a\0\0\0WEBPVP8 ", 16),
+                                       std::string("RIFF\x1a\0\0\0WAVEfmt ", 16),
                                        "DDS |",
                                        std::string("\0\0\0\x18"
                                                    "ftypmp42",
