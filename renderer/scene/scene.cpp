@@ -67,6 +67,12 @@ Rgb Scene::vertex_color(const Surface& s) const {
   return {c.x, c.y, c.z};
 }
 
+void Scene::make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) const {
+  SurfaceParams params = surface_params(material(s), data_->textures, s.uv);
+  if (material(s).vertex_colors) params.base_color *= vertex_color(s);
+  place.emplace(params, s.ng, s.ns);
+}
+
 float Scene::blended_coverage(const Surface& s) const {
   const Mesh& mesh = data_->meshes[s.mesh];
   if (!AlphaMask::needed(*data_, mesh)) return 1;

@@ -79,9 +79,7 @@ class Scene {
     if (const auto& lobes = uniform_lobes_[s.material]) {
       place.emplace(*lobes, s.ng, s.ns);
     } else {
-      SurfaceParams params = surface_params(material(s), data_->textures, s.uv);
-      if (material(s).vertex_colors) params.base_color *= vertex_color(s);
-      place.emplace(params, s.ng, s.ns);
+      make_varying_bsdf(s, place);
     }
   }
   /// The probability with which a ray hits the surface at `s`, above 0: below 1 only with alphaMode
@@ -103,6 +101,8 @@ class Scene {
  private:
   /// COLOR_0; the material has vertex colours.
   Rgb vertex_color(const Surface& s) const;
+  // Not inline: make_bsdf() is called at every hit, and most materials are uniform.
+  void make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) const;
   float blended_coverage(const Surface& s) const;
   void find_contacts(const ThreadPool& pool);
   void make_uniform_lobes();
