@@ -87,6 +87,40 @@ TEST(NormalMaps, TangentsOfTheFileGoBeforeThoseOfTheCoordinates) {
   }
 }
 
+/// The only mesh of `data` as a prototype, as the reader makes one, and its instance.
+SceneData as_instance(SceneData data, const M44d& to_scene, bool mirrored) {
+  Mesh& mesh = data.meshes[0];
+  if (mirrored) {
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    for (V3f& n : mesh.normals) n = -n;
+    for (V4f& t : mesh.tangents) t.w = -t.w;
+  }
+  data.prototypes.push_back({0, 1});
+  data.instances.emplace_back(to_scene, 0);
+  data.bound_ray_errors();
+  return data;
+}
+
+TEST(NormalMaps, OfInstancesAreThoseOfCopies) {
+  for (const bool tangents : {false, true}) {
+    for (const double x : {2.0, -2.0}) {
+      GlbBuilder b = mapped_quad({200, 90, 220});
+      if (tangents) {
+        b.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = b.add_accessor(
+            std::vector<V4f>(4, V4f(0.6F, 0.8F, 0, -1)), test::component_float, "VEC4");
+      }
+      M44d to_scene;
+      to_scene.setScale(V3d(x, 2, 2));
+      const Surface instance =
+          surface_of(as_instance(load(b), to_scene, x < 0), x < 0 ? -0.6F : 0.6F, 0.8F);
+      b.json["nodes"][0]["scale"] = {x, 2, 2};
+      const Surface copy = surface_of(load(b), x < 0 ? -0.6F : 0.6F, 0.8F);
+      expect_near(instance.ns, copy.ns, 1e-5F);
+      EXPECT_GT(std::abs(copy.ns.x), 0.1F);
+    }
+  }
+}
+
 TEST(NormalMaps, StayInFrontOfTheTriangle) {
   const Surface s = surface_of(load(mapped_quad({255, 128, 20})), 0.5F, 0.5F);
   EXPECT_GT(dot(s.ns, s.ng), 0.005F);
