@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
@@ -29,6 +30,12 @@ void check_scene_file(const std::filesystem::path& file) {
   for (const std::string& w : c.warnings) terminal.warning(w);
   fmt::print("{}: {} triangles, {} materials, {} textures, {} cameras, {} lights\n",
              file.filename().string(), c.triangles, c.materials, c.textures, c.cameras, c.lights);
+  std::size_t widest = 0;
+  for (const FeatureUse& f : c.features) widest = std::max(widest, f.name.size());
+  for (const FeatureUse& f : c.features) {
+    fmt::print("  {:<{}}  {:<12}  {}\n", f.name, widest, f.treatment, f.how);
+  }
+  for (const std::string& camera : c.views) fmt::print("  {}\n", camera);
 }
 
 }  // namespace
@@ -41,11 +48,18 @@ void add_check(CLI::App& app, int& code) {
                                          "rendering, and print it with defaults");
   command->add_option("JOB", *job, "a job file (JSON)")->check(CLI::ExistingFile);
   command
-      ->add_option("--scene", *scene, "check a scene (.glb, .gltf) instead and print its contents")
+      ->add_option("--scene", *scene,
+                   "check a scene (.glb, .gltf) instead and print its contents: what of "
+                   "glTF it uses and how that is treated, and its cameras")
       ->check(CLI::ExistingFile);
+  const auto features = std::make_shared<bool>(false);
+  command->add_flag("--features", *features,
+                    "print what is read of glTF, and how, as a table in Markdown");
   command->require_option(1);
-  command->callback([job, scene, &code] {
-    if (scene->empty()) {
+  command->callback([job, scene, features, &code] {
+    if (*features) {
+      fmt::print("{}", feature_table());
+    } else if (scene->empty()) {
       check_job_file(*job);
     } else {
       check_scene_file(*scene);

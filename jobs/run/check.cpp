@@ -5,7 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "renderer/scene/close_surfaces.h"
@@ -23,6 +26,26 @@ std::vector<std::string> check_job(const JobSpec& spec, const RunContext& contex
   return prepared.warnings;
 }
 
+namespace {
+
+/// `"name": {"position": ..., ...}`, in the coordinates of the file.
+std::string view_of(const CameraData& camera, const V3d& origin) {
+  const M44d& m = camera.to_world;
+  const V3d position = V3d(m[3][0], m[3][1], m[3][2]) + origin;
+  const V3d up(m[1][0], m[1][1], m[1][2]), back(m[2][0], m[2][1], m[2][2]);
+  const auto point = [](const V3d& p) {
+    return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", p.x, p.y, p.z);
+  };
+  const std::string extent =
+      camera.projection == Projection::orthographic
+          ? fmt::format("\"type\": \"orthographic\", \"height\": {:.6g}", camera.height)
+          : fmt::format("\"fov\": {:.6g}", camera.yfov * 180 / std::numbers::pi);
+  return fmt::format("\"{}\": {{\"position\": {}, \"target\": {}, \"up\": {}, {}}}", camera.name,
+                     point(position), point(position - back), point(up), extent);
+}
+
+}  // namespace
+
 SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool) {
   if (const std::string kind = file.extension().string(); kind != ".glb" && kind != ".gltf") {
     throw SceneError(
@@ -31,9 +54,17 @@ SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& poo
                     file.string(), kind, file.filename().string(), file.stem().string() + ".glb"));
   }
   SceneData data = load_gltf(file);
-  SceneCounts counts{data.triangle_count(), data.materials.size() - 1,  // without glTF's own
+  // Without glTF's own material, and copies for vertex colours.
+  const auto materials = std::ranges::count(data.materials, false, &Material::vertex_colors) - 1;
+  SceneCounts counts{data.triangle_count(), static_cast<std::size_t>(materials),
                      data.textures.size(),  data.cameras.size(),
-                     data.lights.size(),    data.warnings};
+                     data.lights.size(),    data.warnings,
+                     features_of(file),     {}};
+  constexpr std::size_t most_views = 16;
+  for (const CameraData& camera :
+       std::span(data.cameras).first(std::min(most_views, data.cameras.size()))) {
+    counts.views.push_back(view_of(camera, data.origin));
+  }
   const Scene scene(std::move(data), {.materials = true, .emission = true}, std::nullopt, pool);
   for (const auto& looks : {close_surfaces, hidden_emitters, lights_in_surfaces, nested_solids}) {
     for (std::string& w : looks(scene)) counts.warnings.push_back(std::move(w));

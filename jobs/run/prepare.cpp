@@ -102,7 +102,11 @@ std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
   const auto add = [&all](std::vector<std::string> warnings) {
     for (std::string& w : warnings) all.push_back(std::move(w));
   };
-  if (scene.emitters().empty()) all.emplace_back("the scene has no light: the picture is black");
+  if (scene.emitters().empty()) {
+    all.emplace_back(
+        "the scene has no light: the picture is black; the job's `environment` adds one: "
+        "{\"file\": \"sky.hdr\"}");
+  }
   add(hidden_emitters(scene));
   add(lights_in_surfaces(scene));
   add(nested_solids(scene));
@@ -127,7 +131,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   const bool chooses = std::holds_alternative<AutoSettings>(spec.integrator);
   if (!chooses) p.integrator = make_integrator(method_of(spec.integrator));
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs,
-                             {spec.time, spec.animation});
+                             {spec.time, spec.animation, spec.variant, spec.light_units});
   p.inputs.front().name = spec.scene;
   if (spec.material) change_material(data, *spec.material, spec.scene);
   if (spec.particles) add_particles(data, *spec.particles);

@@ -111,9 +111,42 @@ void check_crop(const JobSpec& spec, std::vector<Problem>& problems) {
   }
 }
 
+/// What belongs to another kind of camera would be left out silently.
+void check_projection(const CameraSettings& camera, PixelFilter filter,
+                      std::vector<Problem>& problems) {
+  const CameraSettings none;
+  const auto unused = [&](std::string_view key, double found, double otherwise, bool used,
+                          std::string_view where) {
+    if (used || found == otherwise) return;
+    problems.push_back(
+        {fmt::format("/camera/{}", key),
+         fmt::format("found {} in a camera that does not use it; allowed: {}", found, where)});
+  };
+  const bool perspective = camera.type == Projection::perspective;
+  const bool lens = perspective && camera.aperture > 0;
+  const std::string_view of_perspective = "type \"perspective\"";
+  const std::string_view of_lens = "an aperture above 0 of a perspective camera";
+  unused("fov", camera.fov, none.fov, perspective, of_perspective);
+  unused("height", camera.height, none.height, camera.type == Projection::orthographic,
+         "type \"orthographic\"");
+  unused("aperture", camera.aperture, 0, perspective, of_perspective);
+  unused("focus", camera.focus, 0, lens, of_lens);
+  unused("blades", camera.blades, 0, lens, of_lens);
+  if (camera.blades == 1 || camera.blades == 2) {
+    problems.push_back(
+        {"/camera/blades", fmt::format("found {}; allowed: 0, or 3 to 64", camera.blades)});
+  }
+  if (camera.type == Projection::panorama && filter != PixelFilter::box) {
+    problems.push_back({"/pixel_filter", fmt::format("found \"{}\" with a panorama; allowed: "
+                                                     "\"box\"",
+                                                     enum_name(filter))});
+  }
+}
+
 void check_camera(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!spec.camera.object || !is_good(problems, "/camera")) return;
   const CameraSettings& camera = *spec.camera.object;
+  check_projection(camera, spec.pixel_filter, problems);
   if (frame_of(camera)) return;
   CameraSettings upright = camera, sideways = camera;
   upright.up = {0, 1, 0}, sideways.up = {1, 0, 0};

@@ -110,6 +110,8 @@ struct JobSpec {
   std::string scene;
   std::optional<double> time;
   std::string animation;
+  std::string variant;
+  LightUnits light_units = LightUnits::file;
   NameOr<CameraSettings> camera;
   std::string label;
   std::array<int, 2> resolution{512, 512};
@@ -149,6 +151,11 @@ void describe(V& v, JobSpec& s) {
      .unit = "s"});
   v("animation", s.animation,
     {.doc = "name of the only animation that `time` shows; empty: all of them", .max = 1024});
+  v("variant", s.variant,
+    {.doc = "name of one of the file's material variants (KHR_materials_variants); empty: the "
+            "materials that meshes have without one",
+     .max = 1024});
+  v("light_units", s.light_units, {.doc = "what the numbers of the file's punctual lights are"});
   v("camera", s.camera,
     {.doc = "name of one of the scene's cameras, or position and direction of another camera; "
             "empty: the scene's first",

@@ -31,7 +31,8 @@ void EyeRecords::place(const IterationContext& context, const LightVertices& lig
       const std::uint64_t pixel = rng.below(pixels);
       const V2i p(static_cast<int>(pixel % static_cast<std::uint64_t>(width)),
                   static_cast<int>(pixel / static_cast<std::uint64_t>(width)));
-      batch.start(context.camera, rng, context.camera.sample(p, rng.next2()), pixel);
+      const Ray ray = context.camera.sample(p, rng.next2(), rng);
+      batch.start(context.camera, rng, ray, pixel);
     }
     walk.trace_paths(batch.states, [&](std::size_t i, int depth) {
       const Vertex& v = batch.vertex(i, depth);

@@ -14,6 +14,7 @@ using Imath::V2f;
 using Imath::V2i;
 using Imath::V3d;
 using Imath::V3f;
+using Imath::V4f;
 
 /// Linear RGB: radiance, reflectance or a throughput. Component-wise arithmetic.
 using Rgb = Imath::Color3f;

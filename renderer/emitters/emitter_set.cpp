@@ -145,6 +145,15 @@ double EmitterSet::mean_luminance(const Mesh& mesh, std::uint32_t triangle,
   return luminance(radiance.x, radiance.y, radiance.z);
 }
 
+double EmitterSet::mean_color(const Mesh& mesh, std::uint32_t triangle) {
+  double sum = 0;
+  for (const std::uint32_t v : mesh.triangles[triangle]) {
+    const V4f& c = mesh.colors[v];
+    sum += double(luminance(c.x, c.y, c.z)) / 3;
+  }
+  return sum;
+}
+
 void EmitterSet::add_light(const Source& source, double power, std::vector<double>& powers) {
   Entry e;
   e.pdf = Pdf<Area>(1.0F);
@@ -161,6 +170,7 @@ void EmitterSet::add_mesh(std::uint32_t m, MeansOfTextures& means, std::vector<d
   Source source{Source::Kind::mesh,
                 material.emits_behind(),
                 material.emission_texture.used(),
+                material.emits_vertex_colors(),
                 material.emission,
                 m,
                 static_cast<std::uint32_t>(entries_.size())};
@@ -183,7 +193,8 @@ void EmitterSet::add_mesh(std::uint32_t m, MeansOfTextures& means, std::vector<d
     const double area = e.area();
     e.pdf = Pdf<Area>(static_cast<float>(1 / area));
     entries_.push_back(e);
-    const double radiance = mean == nullptr ? uniform : mean_luminance(mesh, t, *mean);
+    double radiance = mean == nullptr ? uniform : mean_luminance(mesh, t, *mean);
+    if (source.colored) radiance *= mean_color(mesh, t);
     powers.push_back(std::numbers::pi * source.sides() * radiance * area);
   }
   sources_.push_back(source);
@@ -212,13 +223,21 @@ EmitterPoint EmitterSet::sample_environment(const Rng::FinePoint& at) const {
   return p;
 }
 
-Rgb EmitterSet::varying_emission(const Source& source, std::uint32_t chosen, const V2f& b) const {
-  const std::uint32_t triangle = chosen - source.first_entry;
-  if (source.mask != none && !masks_[source.mask].opaque(triangle, b.x, b.y)) return Rgb(0, 0, 0);
-  if (!source.textured) return source.emission;
+Rgb EmitterSet::varying_emission(const Source& source, const Selected& chosen, const V2f& b) const {
+  const std::uint32_t triangle = chosen.entry - source.first_entry;
+  if (source.mask != none) {
+    const std::array<std::uint32_t, 5> event{static_cast<std::uint32_t>(chosen.at.x),
+                                             static_cast<std::uint32_t>(chosen.at.x >> 32),
+                                             chosen.at.y, chosen.at.besides, chosen.entry};
+    if (!decide_by_bits(masks_[source.mask].coverage(triangle, b), event)) return Rgb(0, 0, 0);
+  }
+  if (!source.textured && !source.colored) return source.emission;
   const Mesh& mesh = scene_->meshes[source.index];
-  return lacuna::emission(scene_->materials[mesh.material], scene_->textures,
-                          mesh.uvs_at(triangle, b.x, b.y));
+  const Rgb emitted = lacuna::emission(scene_->materials[mesh.material], scene_->textures,
+                                       mesh.uvs_at(triangle, b.x, b.y));
+  if (!source.colored) return emitted;
+  const V4f color = mesh.mix(mesh.colors, triangle, b);
+  return emitted * Rgb(color.x, color.y, color.z);
 }
 
 EmitterPoint EmitterSet::sample_punctual(const PunctualLight& light) const {

@@ -67,8 +67,8 @@ class EmitterSet {
     p.offset = ray_offset(p.x, p.ng, e.plane_error);
     p.pdf = e.pdf;
     p.emission = source.emission;
-    if (source.textured || source.mask != none) [[unlikely]]
-      p.emission = varying_emission(source, selected.entry, b);
+    if (source.textured || source.colored || source.mask != none) [[unlikely]]
+      p.emission = varying_emission(source, selected, b);
     return p;
   }
   /// Samples the first edge of a light path from the point `e`.
@@ -99,6 +99,7 @@ class EmitterSet {
     enum class Kind : std::uint8_t { mesh, punctual, environment } kind;
     bool both_sides = false;
     bool textured = false;    // emission varies over the surface
+    bool colored = false;     // as vertex colours do
     Rgb emission{0, 0, 0};    // of a mesh
     std::uint32_t index = 0;  // index of the mesh or light
     std::uint32_t first_entry = 0;
@@ -114,6 +115,8 @@ class EmitterSet {
   /// Means of the emission textures, by texture index; built at the first use.
   using MeansOfTextures = std::map<int, TextureMeans>;
   void add_mesh(std::uint32_t mesh, MeansOfTextures& means, std::vector<double>& powers);
+  /// Mean luminance of the vertex colours of a triangle.
+  static double mean_color(const Mesh& mesh, std::uint32_t triangle);
   double mean_luminance(const Mesh& mesh, std::uint32_t triangle, const TextureMeans& means);
   TreeEmitter tree_emitter(std::uint32_t entry, double power) const;
   std::vector<double> selection_weights(std::span<const double> powers) const;
@@ -121,9 +124,11 @@ class EmitterSet {
   void add_light(const Source& source, double power, std::vector<double>& powers);
   /// sample() of an emitter other than a triangle.
   EmitterPoint sample_light(const Selected& selected) const;
-  /// Emission at barycentric `b` of triangle `chosen`, of a mesh with an emission texture or a
-  /// mask.
-  Rgb varying_emission(const Source& source, std::uint32_t chosen, const V2f& b) const;
+  /// Emission at barycentric `b` of the chosen triangle, of a mesh with an emission texture or a
+  /// mask. As a ray hits a blended point with probability alpha, so the point emits with that
+  /// probability: all of what it emits, decided by the bits that chose it. Then paths that hit it
+  /// and paths that sample it have the same contribution.
+  Rgb varying_emission(const Source& source, const Selected& chosen, const V2f& b) const;
   EmitterPoint sample_environment(const Rng::FinePoint& at) const;
   EmitterPoint sample_punctual(const PunctualLight& light) const;
   float across(const V3f& w) const { return static_cast<float>(bounds_.area_across(w)); }

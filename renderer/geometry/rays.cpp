@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <new>
@@ -53,15 +54,28 @@ void put(const Ray& ray, RTCRay8& packet, std::size_t i) {
   packet.mask[i] = ~0U;
 }
 
+/// Whether ray `i` meets the surface at its candidate hit. The event depends on the bits of the ray
+/// and the triangle: on no thread or packet, and not on how often or in which order Embree asks.
+bool meets(const AlphaMask& mask, const RTCFilterFunctionNArguments* args, unsigned i) {
+  const unsigned n = args->N;
+  const std::uint32_t triangle = RTCHitN_primID(args->hit, n, i);
+  const float coverage =
+      mask.coverage(triangle, {RTCHitN_u(args->hit, n, i), RTCHitN_v(args->hit, n, i)});
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  const std::array<std::uint32_t, 9> event{
+      bits(RTCRayN_org_x(args->ray, n, i)), bits(RTCRayN_org_y(args->ray, n, i)),
+      bits(RTCRayN_org_z(args->ray, n, i)), bits(RTCRayN_dir_x(args->ray, n, i)),
+      bits(RTCRayN_dir_y(args->ray, n, i)), bits(RTCRayN_dir_z(args->ray, n, i)),
+      RTCHitN_geomID(args->hit, n, i),      triangle,
+      RTCHitN_instID(args->hit, n, i, 0)};
+  return decide_by_bits(coverage, event);
+}
+
 // Called by Embree for every candidate hit on a geometry with a mask.
 void mask_filter(const RTCFilterFunctionNArguments* args) {
   const auto& mask = *static_cast<const AlphaMask*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] == 0) continue;
-    if (!mask.opaque(RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
-                     RTCHitN_v(args->hit, args->N, i))) {
-      args->valid[i] = 0;
-    }
+    if (args->valid[i] != 0 && !meets(mask, args, i)) args->valid[i] = 0;
   }
 }
 

@@ -43,9 +43,10 @@ struct RecordedRay {
 class RayCaster {
  public:
   /// Copies the triangles of `scene`, those of prototypes once, and keeps a pointer to `scene`, for
-  /// instances and alpha masks: points of alpha below the cutoff are not hit. Only meshes whose
-  /// material has a mask get a filter. Builds with the thread count of `pool`. Throws SceneError,
-  /// std::bad_alloc if Embree runs out of memory, and Stopped.
+  /// instances and alpha: masked points below the cutoff are not hit, and points of alphaMode BLEND
+  /// with probability alpha, independently for each ray. Only meshes whose alpha can be below 1 get
+  /// a filter. Builds with the thread count of `pool`. Throws SceneError, std::bad_alloc if Embree
+  /// runs out of memory, and Stopped.
   RayCaster(const SceneData& scene, const ThreadPool& pool);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;

@@ -14,6 +14,7 @@
 #include "renderer/geometry/instance.h"
 #include "renderer/geometry/material_extensions.h"
 #include "renderer/images/texture.h"
+#include "renderer/settings/camera_settings.h"
 
 namespace lacuna {
 
@@ -23,6 +24,11 @@ struct Mesh {
   std::vector<V3f> positions;
   std::vector<V3f> normals;             ///< unit shading normals, one per position; empty: flat
   std::array<std::vector<V2f>, 2> uvs;  ///< TEXCOORD_0 and _1; each empty or one per position
+  /// TANGENT: a unit vector along +u, and in w the sign of the bitangent; empty, or one per
+  /// position.
+  std::vector<V4f> tangents;
+  /// COLOR_0: linear RGB and alpha, which multiply the base colour; empty, or one per position.
+  std::vector<V4f> colors;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices below positions.size()
   std::uint32_t material = 0;
 
@@ -35,6 +41,12 @@ struct Mesh {
       result[set] = (1 - u - v) * uvs[set][t[0]] + u * uvs[set][t[1]] + v * uvs[set][t[2]];
     }
     return result;
+  }
+  /// The mean of values of the corners of a triangle at barycentric (u, v).
+  template <class T>
+  T mix(const std::vector<T>& of_corners, std::uint32_t triangle, const V2f& at) const {
+    const auto& t = triangles[triangle];
+    return of_corners[t[0]] * (1 - at.x - at.y) + of_corners[t[1]] * at.x + of_corners[t[2]] * at.y;
   }
 };
 
@@ -58,7 +70,15 @@ struct Material {
   float transmission = 0;
   TextureRef transmission_texture;  ///< R
   MaterialExtensions extensions;
-  bool mask = false;  ///< alphaMode MASK: rays pass where alpha < cutoff
+  TextureRef normal_texture;  ///< linear; RGB is the normal, from [0, 1] to [-1, 1]
+  float normal_scale = 1;     ///< of the normal's x and y
+  bool mask = false;          ///< alphaMode MASK: rays pass where alpha < cutoff
+  bool blend = false;         ///< alphaMode BLEND: rays pass with probability 1 - alpha
+  /// KHR_materials_pbrSpecularGlossiness: A of specular_color_texture times 1 - roughness is the
+  /// glossiness, 1 minus the roughness there.
+  bool textured_glossiness = false;
+  bool unlit = false;          ///< KHR_materials_unlit: emits its base colour, black otherwise
+  bool vertex_colors = false;  ///< its meshes have colours, and no others use it
   float alpha_cutoff = 0.5F;
   bool double_sided = false;  ///< emits from both sides; all surfaces scatter on both
 
@@ -71,9 +91,14 @@ struct Material {
     const Volume& v = extensions.volume;
     return passes && v.solid && !is_black(v.inside.extinction) ? &v.inside : nullptr;
   }
+  /// Whether nothing of it is seen: alphaMode BLEND with an alpha of 0.
+  bool invisible() const { return blend && alpha == 0; }
+  /// Whether vertex colours multiply the emission, too: it is the colour of KHR_materials_unlit.
+  bool emits_vertex_colors() const { return unlit && vertex_colors; }
   bool operator==(const Material&) const = default;
 
-  /// Calls `f` with each texture that scattering depends on.
+  /// Calls `f` with each texture that the lobes of scattering depend on; not the normal map, which
+  /// turns them.
   template <class F>
   void for_each_scattering_texture(F&& f) const {
     for (const TextureRef* t : {&base_color_texture, &metallic_roughness_texture, &specular_texture,
@@ -84,12 +109,18 @@ struct Material {
   }
 };
 
-/// A perspective camera. Looks along -z of `to_world`, x right, y up.
+/// A camera. Looks along -z of `to_world`, x right, y up.
 struct CameraData {
-  std::string name;
-  M44d to_world;  ///< Imath convention: row vectors, p_world = p * to_world; orthonormal 3x3 part
-  double yfov = 0.8;      ///< vertical field of view, radians, in (0, pi)
+  std::string name = {};
+  M44d to_world =
+      {};  ///< Imath convention: row vectors, p_world = p * to_world; orthonormal 3x3 part
+  double yfov = 0.8;      ///< perspective: vertical field of view, radians, in (0, pi)
   std::string node = {};  ///< name of the camera's node
+  Projection projection = Projection::perspective;
+  double height = 2;    ///< orthographic: of the film, scene units
+  double aperture = 0;  ///< perspective: radius of the lens, scene units; 0: a pinhole
+  double focus = 1;     ///< distance of the sharp plane along the view, scene units, above 0
+  int blades = 0;       ///< corners of the aperture, at least 3; 0: it is round
 };
 
 struct SurfaceContact;
@@ -117,7 +148,8 @@ struct SceneData {
   std::vector<Mesh> meshes;
   std::vector<Prototype> prototypes;
   std::vector<Instance> instances;
-  std::vector<Material> materials;  ///< the last one is glTF's default material
+  /// Those of the file, glTF's default material, and copies for meshes with vertex colours.
+  std::vector<Material> materials;
   std::vector<std::unique_ptr<Texture>> textures;
   std::vector<CameraData> cameras;
   std::vector<PunctualLight> lights;

@@ -1,27 +1,60 @@
 #include "renderer/geometry/surface.h"
 
+#include "renderer/geometry/tangent_frame.h"
+
 namespace lacuna {
 
 namespace {
 
 bool uses_textures(const Material& m) {
-  bool any = m.emission_texture.used();
+  bool any = m.emission_texture.used() || m.normal_texture.used();
   m.for_each_scattering_texture([&](const TextureRef&) { any = true; });
   return any;
 }
 
-/// Moves `s`, in the coordinates of a prototype but for its point, to the scene.
+/// Moves `s`, in the coordinates of a prototype but for its point, to the scene. Its normal is bent
+/// there: across it, normals transform otherwise than directions of the surface.
 void place(Surface& s, const SceneData& scene, const Hit& hit, const TriangleShape& placed) {
   const Instance& instance = scene.instances[hit.instance];
-  s.instance = hit.instance;
   const bool smooth = s.ns != s.ng;
   const V3f n = instance.normal(s.ns);
   s.ng = placed.ng;
   s.ns = smooth && n.length2() > 0 ? n.normalized() : s.ng;
   s.offset = ray_offset(s.x, s.ng, placed.plane_error);
+  s.instance = hit.instance;
+  if (scene.materials[s.material].normal_texture.used()) {
+    s.ns = bent_normal(scene, s, {hit.u, hit.v});
+  }
 }
 
+/// The least cosine between a bent normal and the front of the triangle: what points behind it
+/// would scatter no light.
+constexpr float least_cosine = 0.01F;
+
 }  // namespace
+
+V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at) {
+  const Material& m = scene.materials[s.material];
+  const Texture& texture = *scene.textures[static_cast<std::size_t>(m.normal_texture.texture)];
+  if (!texture.decoded()) return s.ns;
+  const Mesh& mesh = scene.meshes[s.mesh];
+  const auto frame = tangent_frame(scene, s, at, m.normal_texture);
+  const auto& uvs = mesh.uvs[static_cast<std::size_t>(m.normal_texture.uv_set)];
+  if (!frame || uvs.empty()) return s.ns;
+  // glTF 2.0, section 3.9.3: from [0, 1] to [-1, 1], then x and y times the scale.
+  const Rgb texel = texture.lookup(m.normal_texture.transform(mesh.mix(uvs, s.triangle, at))).rgb;
+  const V3f n((2 * texel.x - 1) * m.normal_scale, (2 * texel.y - 1) * m.normal_scale,
+              2 * texel.z - 1);
+  V3f bent = frame->to_world(n);
+  const float length2 = bent.length2();
+  if (!(length2 > 0)) return s.ns;
+  bent /= std::sqrt(length2);
+  const V3f front = dot(s.ns, s.ng) < 0 ? -s.ng : s.ng;
+  if (const float lack = least_cosine - dot(bent, front); lack > 0) {
+    bent = (bent + front * lack).normalized();
+  }
+  return bent;
+}
 
 Surface Surface::of_instance(const SceneData& scene, const TriangleTable& table, const Ray& ray,
                              const Hit& hit) {
@@ -52,6 +85,7 @@ TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
   smooth = !mesh.normals.empty();
   textured = uses_textures(m) && !(mesh.uvs[0].empty() && mesh.uvs[1].empty());
   two_uv_sets = !mesh.uvs[1].empty();
+  bent = textured && m.normal_texture.used();
   emits = m.emits();
   emits_behind = m.emits_behind();
   material = mesh.material;

@@ -17,6 +17,7 @@ struct alignas(64) TriangleRecord : TriangleShape {
   bool two_uv_sets = false;
   bool emits : 1 = false;
   bool emits_behind : 1 = false;
+  bool bent : 1 = false;  ///< has a normal map
   std::uint32_t material = 0;
 
   TriangleRecord(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle);
@@ -67,17 +68,23 @@ class TriangleTable {
 /// The triangle of a hit, in scene coordinates.
 TriangleShape placed_triangle(const SceneData& scene, const TriangleTable& table, const Hit& hit);
 
+struct Surface;
+/// The shading normal `s.ns`, in scene coordinates, bent by the normal map of the material at
+/// barycentric `at`; `s.ns` if the texture is not decoded or the triangle has no texture
+/// coordinates.
+V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at);
+
 /// The geometry of a hit. `ng` is unit and points to the front of the triangle.
 struct Surface {
   V3f x{0, 0, 0};
   V3f ng{0, 0, 0};
-  V3f ns{0, 0, 0};   ///< unit; interpolated normals, or ng
+  V3f ns{0, 0, 0};   ///< unit; interpolated normals, or ng; bent by the normal map
   float offset = 0;  ///< ray_offset() at x
   std::array<V2f, 2> uv{V2f(0, 0), V2f(0, 0)};
   std::uint32_t mesh = 0;
   std::uint32_t triangle = 0;
   std::uint32_t material = 0;
-  std::uint32_t instance = no_instance;  ///< index into SceneData::instances, if `mesh` is of one
+  std::uint32_t instance = no_instance;  ///< as Hit::instance
   bool emits = false, emits_behind = false;
 
   Surface() = default;
@@ -113,6 +120,8 @@ struct Surface {
       // Opposite normals can cancel: then keep ng.
       if (length2 > 0.0F) ns = n / std::sqrt(length2);
     }
+    if (r.bent && hit.instance == no_instance) [[unlikely]]
+      ns = bent_normal(scene, *this, {hit.u, hit.v});
   }
 };
 

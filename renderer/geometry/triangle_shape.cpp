@@ -24,6 +24,13 @@ TriangleShape::TriangleShape(const TriangleShape& shape, const Instance& instanc
   plane_error = shape.plane_error * instance.stretch + instance.ray_error;
 }
 
+V2f TriangleShape::barycentric(const V3f& x) const {
+  const V3d n = normal(), step = V3d(x) - V3d(corners[0]);
+  const V3d scaled = n / n.length2();
+  return {static_cast<float>(step.cross(edge(2)).dot(scaled)),
+          static_cast<float>(edge(1).cross(step).dot(scaled))};
+}
+
 TriangleShape::TriangleShape(const std::array<V3f, 3>& at) : corners(at) {
   const V3d n = normal();
   const double twice_area = n.length();

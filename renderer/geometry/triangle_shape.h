@@ -27,6 +27,8 @@ struct TriangleShape {
   /// The triangle of `shape` as an instance places it, in scene coordinates. Its plane_error
   /// includes what Embree's transform of rays adds.
   TriangleShape(const TriangleShape& shape, const Instance& instance);
+  /// Barycentric (u, v), as in Hit, of the point `x` in its plane.
+  V2f barycentric(const V3f& x) const;
   double area() const { return normal().length() / 2; }
   V3d edge(std::size_t to) const { return V3d(corners[to]) - V3d(corners[0]); }
   /// The normal, not unit: its length is twice the area.

@@ -1,6 +1,7 @@
 #include "renderer/gltf/gltf_cameras.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <numbers>
 
 #include "renderer/gltf/gltf_limits.h"
@@ -30,15 +31,35 @@ V3d position_of(const PlacedNode& node, const V3d& scene_origin) {
   return origin - scene_origin;
 }
 
-CameraData read_camera(const GltfObject& camera, const PlacedNode& node, const V3d& origin) {
+void read_perspective(const GltfObject& camera, CameraData& out) {
   const auto lens = camera.object("perspective");
   if (!lens) camera.fail("perspective is missing");
-  CameraData out;
-  out.node = node.place.string("name", "");
-  out.name = camera.string("name", out.node);
   out.yfov = lens->number("yfov", Limits{0, std::numbers::pi});
   if (out.yfov == 0 || out.yfov == std::numbers::pi) {
     lens->refuse("yfov", "radians above 0 and below pi");
+  }
+}
+
+/// The height of the picture is that of the file; its width follows from the film, as in a
+/// perspective camera. Negative magnifications turn the picture over in some viewers; here they
+/// count like positive ones.
+void read_orthographic(const GltfObject& camera, CameraData& out) {
+  const auto film = camera.object("orthographic");
+  if (!film) camera.fail("orthographic is missing");
+  out.projection = Projection::orthographic;
+  film->number("xmag", any_float);
+  out.height = 2 * std::abs(film->number("ymag", any_float));
+  if (out.height == 0) film->refuse("ymag", "any number but 0");
+}
+
+CameraData read_camera(const GltfObject& camera, const PlacedNode& node, const V3d& origin) {
+  CameraData out;
+  out.node = node.place.string("name", "");
+  out.name = camera.string("name", out.node);
+  if (camera.string("type") == "orthographic") {
+    read_orthographic(camera, out);
+  } else {
+    read_perspective(camera, out);
   }
   out.to_world = orthonormal(node, position_of(node, origin));
   return out;
@@ -104,6 +125,13 @@ PunctualLight read_light(const GltfObject& light, const PlacedNode& node, const 
   return out;
 }
 
+/// Whether "4.5.32" is at least major.minor.
+bool is_version_from(const std::string& version, int major, int minor) {
+  int found_major = 0, found_minor = 0;
+  if (std::sscanf(version.c_str(), "%d.%d", &found_major, &found_minor) < 1) return false;
+  return found_major > major || (found_major == major && found_minor >= minor);
+}
+
 void warn_of_no_direction(const PlacedNode& node, const std::string& thing) {
   node.place.warn("direction", "its matrix is singular and gives its " + thing +
                                    " no direction; the " + thing + " is left out");
@@ -129,7 +157,7 @@ void name_apart(std::vector<CameraData>& cameras, const GltfObject& node) {
 }  // namespace
 
 std::vector<CameraData> read_cameras(const GltfObject& root, const std::vector<PlacedNode>& nodes,
-                                     const V3d& origin, Warnings& warnings) {
+                                     const V3d& origin) {
   std::vector<CameraData> out;
   const auto cameras = root.objects("cameras");
   for (const PlacedNode& node : nodes) {
@@ -140,9 +168,7 @@ std::vector<CameraData> read_cameras(const GltfObject& root, const std::vector<P
     if (type != "perspective" && type != "orthographic") {
       camera.refuse("type", "\"perspective\" or \"orthographic\"");
     }
-    if (type != "perspective") {
-      warnings.once(camera.label() + " is orthographic, which is not supported; it is left out");
-    } else if (!node.can_turn) {
+    if (!node.can_turn) {
       warn_of_no_direction(node, "camera");
     } else {
       out.push_back(read_camera(camera, node, origin));
@@ -171,6 +197,26 @@ std::vector<PunctualLight> read_lights(const GltfObject& root, const std::vector
     }
   }
   return out;
+}
+
+void convert_lights(const GltfObject& root, LightUnits units, std::vector<PunctualLight>& lights,
+                    Warnings& warnings) {
+  if (lights.empty()) return;
+  const std::string generator = root.object("asset")->string("generator", "");
+  // "Khronos glTF Blender I/O v4.5.32". From 3.6 on its lighting mode "Standard" is the default.
+  constexpr std::string_view blender = "Khronos glTF Blender I/O v";
+  const bool multiplies =
+      generator.starts_with(blender) && is_version_from(generator.substr(blender.size()), 3, 6);
+  if (units == LightUnits::file && multiplies) {
+    warnings.once(
+        "the lights were written by " + in_quotes(generator) +
+        ", which multiplies watts by 683 lm/W (its lighting mode Standard): they are read 1:1; "
+        "the job's \"light_units\": \"photometric\" divides by 683, \"radiometric\" is right for "
+        "the mode Unitless and ends this warning");
+  }
+  if (units != LightUnits::photometric) return;
+  constexpr float lumens_per_watt = 683;
+  for (PunctualLight& light : lights) light.intensity /= lumens_per_watt;
 }
 
 }  // namespace lacuna::gltf

@@ -49,7 +49,7 @@ bool equal(const Emitter& a, const Emitter& b, const std::vector<Material>& mate
     return true;
   };
   return same(m.positions, n.positions) && same(m.normals, n.normals) && same(m.uvs[0], n.uvs[0]) &&
-         same(m.uvs[1], n.uvs[1]) &&
+         same(m.uvs[1], n.uvs[1]) && same(m.colors, n.colors) &&
          (m.material == n.material || equal(materials[m.material], materials[n.material]));
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "renderer/gltf/gltf_attributes.h"
 #include "renderer/gltf/gltf_duplicates.h"
 #include "renderer/gltf/gltf_instances.h"
 #include "renderer/gltf/gltf_limits.h"
@@ -24,7 +25,8 @@ struct Counts {
   std::uint64_t normals = 0;
   std::uint64_t coarse = 0;                                  ///< meshes; see warn_of_places()
   std::uint64_t points_and_lines = 0, without_position = 0;  ///< primitives
-  std::uint64_t hidden = 0;  ///< nodes with a mesh and a scale that leaves nothing of it
+  std::uint64_t hidden = 0;     ///< nodes with a mesh and a scale that leaves nothing of it
+  std::uint64_t invisible = 0;  ///< primitives; see Material::invisible()
 };
 
 /// Positions relative to `origin`. A vertex that is not finite in the file stays so: its triangles
@@ -74,41 +76,10 @@ std::uint64_t mend_normals(Mesh& mesh) {
   return mended;
 }
 
-/// Which of TEXCOORD_0 and _1 the material's textures read, or the direction of its facets.
-std::array<bool, 2> uv_sets_used(const Material& m) {
-  std::array<bool, 2> used{};
-  const auto use = [&](const TextureRef& ref) {
-    used[static_cast<std::size_t>(ref.uv_set)] = true;
-  };
-  m.for_each_scattering_texture(use);
-  if (m.emission_texture.used()) use(m.emission_texture);
-  if (m.extensions.anisotropy.strength > 0) use(m.extensions.anisotropy.texture);
-  return used;
-}
-
-void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
-              const Material& material, Mesh& mesh, Warnings& warnings) {
-  const auto used = uv_sets_used(material);
-  for (std::size_t set = 0; set < used.size(); ++set) {
-    if (!used[set]) continue;
-    const std::string name = "TEXCOORD_" + std::to_string(set);
-    if (source.attribute(name) < 0) {
-      warnings.once(source.place() + " has no " + name + ", which material \"" + material.name +
-                    "\" needs: its textures are read at (0, 0)");
-      continue;
-    }
-    const AccessorView view = source.view(name, ElementType::vec2, Components::quantized);
-    mesh.uvs[set].reserve(kept.size());
-    for (const std::uint32_t v : kept) {
-      const auto uv = view.floats<2>(v);
-      mesh.uvs[set].emplace_back(uv[0], uv[1]);
-    }
-  }
-}
-
 bool is_read(const std::string& attribute) {
-  return attribute == "POSITION" || attribute == "NORMAL" || attribute == "TEXCOORD_0" ||
-         attribute == "TEXCOORD_1";
+  constexpr auto read = std::to_array<std::string_view>(
+      {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"});
+  return std::ranges::find(read, attribute) != read.end();
 }
 
 void warn_of_vertices(const Source& source, const Vertices& vertices, Warnings& warnings) {
@@ -166,7 +137,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, const V3d& origin,
     mesh.normals = world_normals(vertices, kept);
     counts.normals += mend_normals(mesh);
   }
-  read_uvs(source, kept, scene.materials[mesh.material], mesh, warnings);
+  read_attributes(source, vertices, kept, scene.materials[mesh.material], mesh, warnings);
   warn_of_vertices(source, vertices, warnings);
   return mesh;
 }
@@ -218,7 +189,8 @@ std::string left_out(const Counts& counts) {
   for (const auto& [count, what] :
        {std::pair(counts.points_and_lines, " primitives of points or lines"),
         {counts.without_position, " primitives without POSITION"},
-        {counts.hidden, " meshes under a scale of 0"}}) {
+        {counts.hidden, " meshes under a scale of 0"},
+        {counts.invisible, " primitives of alphaMode BLEND with alpha 0"}}) {
     if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
   }
   return text;
@@ -241,6 +213,8 @@ class Builder {
   Counts counts;
 
  private:
+  /// The copy of a material for meshes with vertex colours.
+  std::uint32_t with_vertex_colors(std::uint32_t material);
   bool is_in(Part part, const file::Primitive& primitive) const {
     const bool emits = scene_.materials[material_of(primitive, scene_.materials)].emits();
     return part == Part::all || (part == Part::emitting) == emits;
@@ -252,7 +226,18 @@ class Builder {
   const Skins& skins_;
   SceneData& scene_;
   Warnings& warnings_;
+  std::map<std::uint32_t, std::uint32_t> colored_;  // copies of materials, by the original
 };
+
+std::uint32_t Builder::with_vertex_colors(std::uint32_t material) {
+  const auto next = static_cast<std::uint32_t>(scene_.materials.size());
+  const auto [found, is_new] = colored_.try_emplace(material, next);
+  if (is_new) {
+    scene_.materials.push_back(Material(scene_.materials[material]));
+    scene_.materials.back().vertex_colors = true;
+  }
+  return found->second;
+}
 
 void Builder::add_node(const PlacedNode& node, Part part, const V3d& origin) {
   if (node.place.has("mesh") && node.rank < 2 && !node.skin) ++counts.hidden;
@@ -268,7 +253,12 @@ void Builder::add_node(const PlacedNode& node, Part part, const V3d& origin) {
     }
     const Source source{model_, *mesh_index, k, node, skins_};
     if (source.hidden()) continue;
+    if (scene_.materials[material_of(primitive, scene_.materials)].invisible()) {
+      ++counts.invisible;
+      continue;
+    }
     Mesh built = build_mesh(source, scene_, origin, counts, warnings_);
+    if (!built.colors.empty()) built.material = with_vertex_colors(built.material);
     built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
     if (!built.triangles.empty()) scene_.meshes.push_back(std::move(built));
   }

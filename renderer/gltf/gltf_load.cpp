@@ -5,6 +5,7 @@
 #include "renderer/gltf/gltf_geometry.h"
 #include "renderer/gltf/gltf_guard.h"
 #include "renderer/gltf/gltf_load.h"
+#include "renderer/gltf/gltf_material_choice.h"
 #include "renderer/gltf/gltf_materials.h"
 #include "renderer/gltf/gltf_nodes.h"
 #include "renderer/gltf/gltf_origin.h"
@@ -14,29 +15,33 @@ namespace lacuna {
 namespace gltf {
 namespace {
 
-void warn_of_unread_parts(const GltfObject& root, const SceneTime& time, Warnings& warnings) {
-  if (root.array_size("animations") > 0 && !time.seconds) {
+void warn_of_unread_parts(const GltfObject& root, const SceneChoice& choice, Warnings& warnings) {
+  if (root.array_size("animations") > 0 && !choice.seconds) {
     warnings.once(
         "animations are left out: the scene is in its static pose; the job's time shows "
         "them at a moment");
   }
-  if (!time.animation.empty() && !time.seconds) {
-    warnings.once("animation " + in_quotes(time.animation) + " is left out, as no time is given");
+  if (!choice.animation.empty() && !choice.seconds) {
+    warnings.once("animation " + in_quotes(choice.animation) + " is left out, as no time is given");
   }
   for (const std::string& name : root.strings("extensionsUsed")) {
     if (!extension_supported(name)) warnings.once(unsupported_extension(name));
   }
 }
 
-/// The data that are hashed in addition to the files' bytes; none for the static pose.
-void add_time(const SceneTime& time, Hasher& content) {
-  if (!time.seconds) return;
-  content.add(std::span<const double>(&*time.seconds, 1));
-  content.add(std::span<const char>(time.animation));
+/// The data that are hashed in addition to the files' bytes; none if nothing is chosen.
+void add_choice(const SceneChoice& choice, Hasher& content) {
+  if (choice.seconds) {
+    content.add(std::span<const double>(&*choice.seconds, 1));
+    content.add(std::span<const char>(choice.animation));
+  }
+  if (!choice.variant.empty()) content.add(std::span<const char>(choice.variant));
+  if (choice.light_units == LightUnits::photometric)
+    content.add(std::span<const char>(std::string_view("photometric")));
 }
 
 SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs,
-               const SceneTime& time) {
+               const SceneChoice& choice) {
   SceneFolder folder(file);
   const Bytes bytes = folder.read_main();
   const Framing framing = check_framing(bytes);
@@ -51,34 +56,36 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
   scene.materials = read_materials(root, textures, warnings);
   std::vector<PlacedNode> nodes;
   const auto place_cameras_and_lights = [&](const GltfObject& from, Warnings& to) {
-    scene.cameras = read_cameras(from, nodes, scene.origin, to);
+    scene.cameras = read_cameras(from, nodes, scene.origin);
     scene.lights = read_lights(from, nodes, scene.origin, to);
   };
   {  // Errors in nodes, cameras and lights are reported before buffers are read. Warnings about a
      // static pose that animations replace are suppressed.
-    const GltfObject from = time.seconds ? GltfObject(json, quiet) : root;
-    Warnings& to = time.seconds ? unused : warnings;
+    const GltfObject from = choice.seconds ? GltfObject(json, quiet) : root;
+    Warnings& to = choice.seconds ? unused : warnings;
     nodes = place_nodes(from, {}, to);
     place_cameras_and_lights(from, to);
   }
 
   Hasher content;
   content.add(std::span<const std::uint8_t>(bytes));
-  const file::Model model = read_model(bytes, framing, root, folder, content);
+  file::Model model = read_model(bytes, framing, root, folder, content);
+  choose_materials(root, choice.variant, scene.materials.size(), model);
   Pose pose;
-  if (time.seconds) {
-    pose = pose_at(root, model, *time.seconds, time.animation, warnings);
+  if (choice.seconds) {
+    pose = pose_at(root, model, *choice.seconds, choice.animation, warnings);
     nodes = place_nodes(root, pose, warnings);
   }
-  add_time(time, content);
+  add_choice(choice, content);
   const Skins skins = pose_skins(root, model, nodes, node_transforms(root, pose));
   build_meshes(model, nodes, skins, scene, warnings);
-  if (time.seconds || scene.origin != V3d(0.0)) place_cameras_and_lights(root, warnings);
+  if (choice.seconds || scene.origin != V3d(0.0)) place_cameras_and_lights(root, warnings);
   warn_of_far_cameras(scene, warnings);
+  convert_lights(root, choice.light_units, scene.lights, warnings);
   scene.textures = textures.build(model, folder, content);
   scene.content_hash = content.digest();
   if (inputs != nullptr) *inputs = folder.inputs();
-  warn_of_unread_parts(root, time, warnings);
+  warn_of_unread_parts(root, choice, warnings);
   scene.warnings = warnings.take();
   return scene;
 }
@@ -87,9 +94,9 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
 }  // namespace gltf
 
 SceneData load_gltf(const std::filesystem::path& file, std::vector<InputFile>* inputs,
-                    const SceneTime& time) {
+                    const SceneChoice& choice) {
   try {
-    return gltf::load(file, inputs, time);
+    return gltf::load(file, inputs, choice);
   } catch (const SceneError& e) {
     throw SceneError(file.string() + ": " + e.what());
   }

@@ -1,6 +1,7 @@
 #include "renderer/gltf/gltf_materials.h"
 
 #include "renderer/gltf/gltf_material_extensions.h"
+#include "renderer/gltf/gltf_shading_models.h"
 
 namespace lacuna::gltf {
 namespace {
@@ -17,7 +18,7 @@ float read(const GltfObject& from, std::string_view key, float fallback, Limits 
 
 void read_metallic_roughness(const GltfObject& material, TextureTable& textures, Material& out) {
   const auto pbr = material.object("pbrMetallicRoughness");
-  if (!pbr) return;
+  if (!pbr || material.extension("KHR_materials_pbrSpecularGlossiness")) return;
   if (const auto c = pbr->numbers<4>("baseColorFactor", unit_interval)) {
     out.base_color = to_rgb({(*c)[0], (*c)[1], (*c)[2]});
     out.alpha = static_cast<float>((*c)[3]);
@@ -64,19 +65,26 @@ void read_specular(const GltfObject& material, TextureTable& textures, Material&
   }
 }
 
-void read_alpha(const GltfObject& material, Warnings& warnings, Material& out) {
+void read_normal_map(const GltfObject& material, TextureTable& textures, Material& out) {
+  const auto map = material.object("normalTexture");
+  if (!map) return;
+  out.normal_scale = read(*map, "scale", out.normal_scale, any_float);
+  out.normal_texture =
+      textures.reference(material, "normalTexture", Encoding::linear, out.normal_scale != 0);
+}
+
+void read_alpha(const GltfObject& material, Material& out) {
   const std::string mode = material.string("alphaMode", "OPAQUE");
   if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") {
     material.refuse("alphaMode", "\"OPAQUE\", \"MASK\" or \"BLEND\"");
   }
-  if (mode == "BLEND") warnings.once("alphaMode BLEND is not supported: such materials are opaque");
   out.mask = mode == "MASK";
+  out.blend = mode == "BLEND";
   out.alpha_cutoff = read(material, "alphaCutoff", out.alpha_cutoff, non_negative);
   out.double_sided = material.boolean("doubleSided", out.double_sided);
 }
 
 void warn_of_unread_extensions(const GltfObject& material, Warnings& warnings) {
-  if (material.has("normalTexture")) warnings.once("normal maps are not supported and left out");
   if (material.has("occlusionTexture")) {
     warnings.once("occlusion maps are left out: occlusion is what is being computed");
   }
@@ -99,7 +107,9 @@ std::vector<Material> read_materials(const GltfObject& root, TextureTable& textu
     read_emission(material, textures, out);
     read_specular(material, textures, out);
     read_material_extensions(material, textures, out.extensions);
-    read_alpha(material, warnings, out);
+    read_alpha(material, out);
+    read_normal_map(material, textures, out);
+    read_shading_model(material, textures, out);
     warn_of_unread_extensions(material, warnings);
     materials.push_back(std::move(out));
   }

@@ -4,19 +4,13 @@
 #include <numbers>
 
 #include "renderer/gltf/gltf_compression.h"
+#include "renderer/gltf/gltf_features.h"
 #include "renderer/gltf/gltf_guard.h"
 
 namespace lacuna::gltf {
 namespace {
 
 constexpr std::uint64_t max_bytes = (std::uint64_t{1} << 32) - 1;
-
-constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {"EXT_mesh_gpu_instancing", meshopt_extension, "KHR_lights_punctual",
-     "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_diffuse_transmission",
-     "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence",
-     "KHR_materials_sheen", "KHR_materials_specular", "KHR_materials_transmission",
-     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform"});
 
 struct Sizes {
   explicit Sizes(const GltfObject& root)
@@ -45,11 +39,8 @@ void check_asset(const GltfObject& root) {
   }
   for (const std::string& name : root.strings("extensionsRequired")) {
     if (extension_supported(name)) continue;
-    std::string allowed;
-    for (const auto known : supported_extensions) {
-      allowed.append(allowed.empty() ? "" : ", ").append(known);
-    }
-    root.fail("extensionsRequired: found " + in_quotes(name) + "; allowed: " + allowed);
+    root.fail("extensionsRequired: found " + in_quotes(name) + remedy_for(name) +
+              "; allowed: " + supported_extensions());
   }
 }
 
@@ -60,7 +51,7 @@ void refuse_compressed(const GltfObject& place) {
   for (const std::string& name : extensions->keys()) {
     if (name.find("compression") == std::string::npos) continue;
     place.fail("its data come by extension " + name +
-               ", which is not supported, and there is no fallback without it");
+               ", which is not supported, and there is no fallback without it" + remedy_for(name));
   }
 }
 
@@ -291,15 +282,6 @@ void check_nodes(const GltfObject& root, const Sizes& sizes) {
 }
 
 }  // namespace
-
-bool extension_supported(std::string_view name) {
-  return std::find(supported_extensions.begin(), supported_extensions.end(), name) !=
-         supported_extensions.end();
-}
-
-std::string unsupported_extension(std::string_view name) {
-  return "extension " + std::string(name) + " is not supported and left out";
-}
 
 void check_structure(const GltfObject& root, const Framing& framing) {
   const Sizes sizes(root);

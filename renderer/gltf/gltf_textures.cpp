@@ -1,5 +1,7 @@
 #include "renderer/gltf/gltf_textures.h"
 
+#include "renderer/gltf/gltf_features.h"
+
 #include <algorithm>
 #include <string>
 
@@ -64,14 +66,21 @@ TextureRef TextureTable::reference(const GltfObject& owner, std::string_view key
   return ref;
 }
 
-int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
-  const auto source = texture.index("source", images_.size(), "images");
-  if (!source) {
-    const auto extensions = texture.object("extensions");
-    const auto names = extensions ? extensions->keys() : std::vector<std::string>{};
-    texture.fail("source is missing: it has no PNG or JPEG image" +
-                 (names.empty() ? "" : ", only what extension " + names.front() + " gives"));
+std::size_t TextureTable::source_of(const GltfObject& texture) const {
+  if (const auto webp = texture.extension("EXT_texture_webp")) {
+    if (const auto source = webp->index("source", images_.size(), "images")) return *source;
   }
+  if (const auto source = texture.index("source", images_.size(), "images")) return *source;
+  const auto extensions = texture.object("extensions");
+  const auto names = extensions ? extensions->keys() : std::vector<std::string>{};
+  texture.fail("source is missing: it has no PNG or JPEG image" +
+               (names.empty() ? ""
+                              : ", only what extension " + names.front() + " gives" +
+                                    remedy_for(names.front())));
+}
+
+int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
+  const auto source = source_of(texture);
   const auto sampler = texture.index("sampler", samplers_.size(), "samplers");
   const GltfObject* used = sampler ? &samplers_[*sampler] : nullptr;
   constexpr std::uint64_t nearest = 9728;
@@ -79,7 +88,7 @@ int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
       used->integer("magFilter", 0, 65535) == nearest) {
     warnings_.once("samplers with magFilter NEAREST are read with bilinear interpolation");
   }
-  const Entry entry{*source, encoding, wrap_mode(used, "wrapS"), wrap_mode(used, "wrapT")};
+  const Entry entry{source, encoding, wrap_mode(used, "wrapS"), wrap_mode(used, "wrapT")};
   const auto found = std::find(entries_.begin(), entries_.end(), entry);
   const auto index = found - entries_.begin();
   if (found == entries_.end()) entries_.push_back(entry);

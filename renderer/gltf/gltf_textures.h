@@ -36,6 +36,8 @@ class TextureTable {
     Texture::Wrap wrap_s, wrap_t;
     bool operator==(const Entry&) const = default;
   };
+  /// The index of the image to read. Throws SceneError where there is none of a known kind.
+  std::size_t source_of(const GltfObject& texture) const;
   int enter(const GltfObject& texture, Texture::Encoding encoding);
 
   Warnings& warnings_;

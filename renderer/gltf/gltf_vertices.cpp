@@ -116,6 +116,18 @@ V3f Vertices::world_normal(std::size_t i) const {
   return std::isnormal(length) ? V3f(world / length) : V3f(0, 0, 0);
 }
 
+V4f Vertices::world_tangent(std::size_t i, const V3d& tangent, float sign) const {
+  const M44d m = skin_ ? skin_->to_world(i) : source_.node.to_world;
+  const V3d world = row(m, 0) * tangent.x + row(m, 1) * tangent.y + row(m, 2) * tangent.z;
+  const double length = world.length();
+  if (!std::isnormal(length)) return {0, 0, 0, 1};
+  const V3f unit(world / length);
+  // The transform of a cross product points the other way where it mirrors. (A prototype of a
+  // mirrored node is not placed yet, but has its normals turned.)
+  const bool is_mirrored = skin_ ? determinant3(m) < 0 : source_.node.mirrored;
+  return {unit.x, unit.y, unit.z, is_mirrored ? -sign : sign};
+}
+
 bool Vertices::mirrored() const { return skin_ ? skin_->mirrored() : source_.node.mirrored; }
 
 }  // namespace lacuna::gltf

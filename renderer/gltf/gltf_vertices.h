@@ -62,6 +62,10 @@ class Vertices {
   /// Of unit length; 0 if it has no direction. The primitive has NORMAL.
   V3f world_normal(std::size_t i) const;
 
+  /// `tangent`, in the mesh's coordinates, and in w the sign of its bitangent. Of unit length; 0
+  /// if it has no direction.
+  V4f world_tangent(std::size_t i, const V3d& tangent, float sign) const;
+
   /// Whether the winding of the triangles is reversed.
   bool mirrored() const;
   /// Whether world() applies one transform to all vertices of the file.

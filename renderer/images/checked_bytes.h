@@ -30,6 +30,13 @@ class CheckedBytes {
     for (const std::uint8_t b : take(bytes)) value = value << 8 | b;
     return value;
   }
+  /// The same, least significant byte first.
+  std::uint32_t little_endian(std::size_t bytes) {
+    std::uint32_t value = 0;
+    const auto taken = take(bytes);
+    for (std::size_t i = bytes; i > 0; --i) value = value << 8 | taken[i - 1];
+    return value;
+  }
   /// The bytes from offset `begin` to the current one.
   std::span<const std::uint8_t> since(std::size_t begin) const {
     return all_.subspan(begin, at_ - begin);

@@ -34,10 +34,19 @@ std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std
 /// A JPEG of 8 bits, grey or three colours, in at most 500 scans, up to max_texture_side.
 std::vector<std::uint8_t> plain_jpeg(std::span<const std::uint8_t> jpeg, const std::string& label);
 
-/// The number of texels, from the header of a PNG or the frame header of a JPEG. Does not validate
-/// the rest of the file.
+/// A still WebP, lossy or lossless, up to max_texture_side (WebP itself ends at 16383). Without
+/// alpha: the same colours, as an image that has none.
+std::vector<std::uint8_t> plain_webp(std::span<const std::uint8_t> webp, const std::string& label,
+                                     bool alpha);
+/// Whether the bytes begin as those of a WebP.
+bool is_webp(std::span<const std::uint8_t> bytes);
+
+/// The number of texels, from the header of a PNG, WebP or TIFF or the frame header of a JPEG. Does
+/// not validate the rest of the file.
 std::uint64_t png_texels(std::span<const std::uint8_t> png, const std::string& label);
 std::uint64_t jpeg_texels(std::span<const std::uint8_t> jpeg, const std::string& label);
+std::uint64_t webp_texels(std::span<const std::uint8_t> webp, const std::string& label);
+std::uint64_t tiff_texels(std::span<const std::uint8_t> tiff, const std::string& label);
 
 /// A Radiance picture to decode, and the factors that its header states for each channel.
 struct PlainHdr {
@@ -63,5 +72,9 @@ std::string chromaticities_text(const Chromaticities& xy);
 /// The first picture of a TIFF of up to 4 GiB and max_picture_side: 1, 3 or 4 channels of 16- or
 /// 32-bit floats, uncompressed or compressed by LZW, Deflate or PackBits.
 std::vector<std::uint8_t> plain_tiff(std::span<const std::uint8_t> tiff, const std::string& label);
+/// The first picture of a TIFF up to max_texture_side: 1 to 4 channels of unsigned integers of 8 or
+/// 16 bits, compressed as above, top row first, with alpha that is not multiplied in.
+std::vector<std::uint8_t> plain_tiff_texture(std::span<const std::uint8_t> tiff,
+                                             const std::string& label);
 
 }  // namespace lacuna

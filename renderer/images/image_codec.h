@@ -15,7 +15,7 @@ namespace lacuna {
 // std::runtime_error with a reason that names no file, and std::bad_alloc.
 
 /// The supported formats. The caller determines the format; the module never guesses it.
-enum class ImageFormat { openexr, png, jpeg, radiance_hdr, tiff };
+enum class ImageFormat { openexr, png, jpeg, webp, radiance_hdr, tiff };
 
 /// The header of one picture of a file, as stored.
 struct PictureHeader {
@@ -69,7 +69,7 @@ class ImageCodec {
   /// Opens a file in memory with the reader of `format`; `bytes` must outlive the result.
   virtual std::unique_ptr<PictureFile> open(ImageFormat format,
                                             std::span<const std::uint8_t> bytes) const = 0;
-  /// Decodes a PNG or JPEG. Thread-safe.
+  /// Decodes a PNG, JPEG, WebP or TIFF of integers. Thread-safe.
   virtual StoredTexels decode(ImageFormat format, std::span<const std::uint8_t> bytes) const = 0;
   /// Scan lines in ZIP compression; equal contents give equal bytes.
   virtual EncodedImage encode_exr(const ExrContent& content) const = 0;

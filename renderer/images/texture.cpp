@@ -86,7 +86,7 @@ Texture::Texture(std::string label, std::vector<std::uint8_t> encoded, Encoding 
 
 void Texture::decode() {
   if (decoded()) return;
-  Rgba8Image image = decode_png_or_jpeg(encoded_, label_);
+  Rgba8Image image = decode_texture(encoded_, label_);
   width_ = image.width;
   height_ = image.height;
   texels_ = std::move(image.rgba);
@@ -94,7 +94,7 @@ void Texture::decode() {
 }
 
 std::uint64_t Texture::texels() const {
-  return decoded() ? texels_.size() / 4 : texels_of_png_or_jpeg(encoded_, label_);
+  return decoded() ? texels_.size() / 4 : texels_of_texture(encoded_, label_);
 }
 
 /// The four texels of a lookup, and their weights.

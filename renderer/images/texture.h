@@ -22,7 +22,7 @@ class Texture {
   enum class Encoding { linear, srgb };
   enum class Wrap { repeat, mirrored, clamp };
 
-  /// `label` names the image in errors. `encoded` holds a whole PNG or JPEG file.
+  /// `label` names the image in errors. `encoded` holds a whole PNG, JPEG, WebP or TIFF.
   Texture(std::string label, std::vector<std::uint8_t> encoded, Encoding encoding, Wrap wrap_s,
           Wrap wrap_t);
 
@@ -30,7 +30,7 @@ class Texture {
   /// one texture. The scene calls it before rendering, for the textures that the integrator needs.
   /// Texels have 8 bits per channel (16-bit PNGs are rounded), grey becomes RGB, missing alpha
   /// becomes 1, and alpha is not multiplied into the colour. Throws SceneError if the image is not
-  /// a PNG or JPEG, is corrupt, or is larger than 16384 x 16384.
+  /// one of these, is corrupt, or is larger than 16384 x 16384.
   void decode();
   /// The number of texels; before decode(), from the image's header. Throws SceneError.
   std::uint64_t texels() const;

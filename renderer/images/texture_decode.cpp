@@ -59,22 +59,53 @@ ImageFormat encoded_format(std::span<const std::uint8_t> encoded, const std::str
   };
   if (starts_with(png)) return ImageFormat::png;
   if (starts_with(jpeg)) return ImageFormat::jpeg;
-  throw SceneError(label + ": neither a PNG nor a JPEG");
+  if (is_webp(encoded)) return ImageFormat::webp;
+  constexpr std::array<std::uint8_t, 4> little{'I', 'I', 42, 0}, big{'M', 'M', 0, 42};
+  if (starts_with(little) || starts_with(big)) return ImageFormat::tiff;
+  throw SceneError(label + ": neither a PNG nor a JPEG, WebP or TIFF");
+}
+
+/// The library multiplies a WebP's colours by its alpha, which rounds them: they are read from the
+/// image without alpha, and the alpha from the whole.
+Rgba8Image decode_webp(std::span<const std::uint8_t> encoded, const std::string& label) {
+  const auto whole = plain_webp(encoded, label, true), colors = plain_webp(encoded, label, false);
+  Rgba8Image image = decode_plain(ImageFormat::webp, colors, label);
+  if (whole == colors) return image;
+  const Rgba8Image with_alpha = decode_plain(ImageFormat::webp, whole, label);
+  if (with_alpha.rgba.size() != image.rgba.size()) {
+    throw SceneError(label + ": is corrupt: its alpha has another size");
+  }
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = with_alpha.rgba[i];
+  return image;
 }
 
 }  // namespace
 
-std::uint64_t texels_of_png_or_jpeg(std::span<const std::uint8_t> encoded,
-                                    const std::string& label) {
-  return encoded_format(encoded, label) == ImageFormat::png ? png_texels(encoded, label)
-                                                            : jpeg_texels(encoded, label);
+std::uint64_t texels_of_texture(std::span<const std::uint8_t> encoded, const std::string& label) {
+  switch (encoded_format(encoded, label)) {
+    case ImageFormat::jpeg:
+      return jpeg_texels(encoded, label);
+    case ImageFormat::webp:
+      return webp_texels(encoded, label);
+    case ImageFormat::tiff:
+      return tiff_texels(encoded, label);
+    default:
+      return png_texels(encoded, label);
+  }
 }
 
-Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label) {
+Rgba8Image decode_texture(std::span<const std::uint8_t> encoded, const std::string& label) {
   const ImageFormat format = encoded_format(encoded, label);
-  return decode_plain(
-      format, format == ImageFormat::png ? plain_png(encoded, label) : plain_jpeg(encoded, label),
-      label);
+  switch (format) {
+    case ImageFormat::jpeg:
+      return decode_plain(format, plain_jpeg(encoded, label), label);
+    case ImageFormat::webp:
+      return decode_webp(encoded, label);
+    case ImageFormat::tiff:
+      return decode_plain(format, plain_tiff_texture(encoded, label), label);
+    default:
+      return decode_plain(format, plain_png(encoded, label), label);
+  }
 }
 
 }  // namespace lacuna

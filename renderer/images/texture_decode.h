@@ -14,13 +14,14 @@ struct Rgba8Image {
   HugeVector<std::uint8_t> rgba;  ///< 4 x width x height
 };
 
-/// The number of texels of a PNG or JPEG, from its header. Throws SceneError with `label`.
-std::uint64_t texels_of_png_or_jpeg(std::span<const std::uint8_t> encoded,
-                                    const std::string& label);
+/// The number of texels of a PNG, JPEG, WebP or TIFF, from its header. Throws SceneError with
+/// `label`.
+std::uint64_t texels_of_texture(std::span<const std::uint8_t> encoded, const std::string& label);
 
-/// Decodes a PNG or JPEG, by its magic bytes, of up to 16384 texels a side. 16 bits are rounded to
-/// 8, grey becomes RGB, missing alpha becomes 255; gamma and profiles are ignored, as glTF
-/// requires. Throws SceneError with `label`; std::runtime_error if the image module is missing.
-Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label);
+/// Decodes a PNG, JPEG, WebP or TIFF, by its magic bytes, of up to 16384 texels a side. 16 bits are
+/// rounded to 8, grey becomes RGB, missing alpha becomes 255; gamma and profiles are ignored, as
+/// glTF requires. Throws SceneError with `label`; std::runtime_error if the image module is
+/// missing.
+Rgba8Image decode_texture(std::span<const std::uint8_t> encoded, const std::string& label);
 
 }  // namespace lacuna

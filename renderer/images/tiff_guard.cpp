@@ -45,8 +45,10 @@ constexpr std::uint64_t largest_tiff_expansion = 4096;
 
 class TiffGuard {
  public:
-  TiffGuard(std::span<const std::uint8_t> tiff, const std::string& label)
-      : plain_(tiff.begin(), tiff.end()), in_(plain_, label) {
+  enum class Kind { picture, texture };
+
+  TiffGuard(std::span<const std::uint8_t> tiff, const std::string& label, Kind kind)
+      : plain_(tiff.begin(), tiff.end()), in_(plain_, label), kind_(kind) {
     if (plain_.size() < 8) in_.fail("is corrupt: it ends early");
     little_ = plain_[0] == 'I';
   }
@@ -56,6 +58,11 @@ class TiffGuard {
     check_pixels();
     check_data();
     return std::move(plain_);
+  }
+  std::uint64_t pixels() {
+    read_directory();
+    check_size();
+    return std::uint64_t{width_} * height_;
   }
 
  private:
@@ -124,23 +131,26 @@ class TiffGuard {
     return it == tags_.end() ? otherwise : it->second.front();
   }
 
-  void check_pixels() {
+  bool is_texture() const { return kind_ == Kind::texture; }
+
+  void check_size() {
     width_ = all(image_width).front();
     height_ = all(image_length).front();
     in_.require_size(static_cast<std::int64_t>(width_), static_cast<std::int64_t>(height_),
-                     max_picture_side, "pixels");
+                     is_texture() ? max_texture_side : max_picture_side,
+                     is_texture() ? "texels" : "pixels");
+  }
+
+  void check_pixels() {
+    check_size();
     samples_ = one(samples_per_pixel, 1);
-    if (samples_ != 1 && samples_ != 3 && samples_ != 4) {
-      in_.fail("has " + std::to_string(samples_) + " channels; allowed: 1, 3, 4");
+    const bool with_alpha = is_texture() && samples_ == 2;
+    if (samples_ != 1 && samples_ != 3 && samples_ != 4 && !with_alpha) {
+      in_.fail("has " + std::to_string(samples_) + " channels; allowed: 1, " +
+               (is_texture() ? "2, " : "") + "3, 4");
     }
-    const Values& depths = all(bits_per_sample);
-    bits_ = depths.front();
-    const bool floats = one(sample_format, 1) == format_float;
-    if (!floats || (bits_ != 16 && bits_ != 32) ||
-        std::any_of(depths.begin(), depths.end(), [&](std::uint32_t d) { return d != bits_; })) {
-      in_.fail("has " + std::to_string(bits_) + "-bit " + (floats ? "floats" : "integers") +
-               "; allowed: 16- and 32-bit floats");
-    }
+    check_values();
+    if (is_texture()) check_texture();
     const std::uint32_t coding = one(compression, 1), colours = one(photometric, 0);
     if (std::find(compressions.begin(), compressions.end(), coding) == compressions.end()) {
       in_.fail("has compression " + std::to_string(coding) +
@@ -149,6 +159,34 @@ class TiffGuard {
     if (colours != 1 && colours != 2) {
       in_.fail("has photometric interpretation " + std::to_string(colours) +
                "; allowed: 1 (grey), 2 (RGB)");
+    }
+  }
+
+  /// The type of the values.
+  void check_values() {
+    const Values& depths = all(bits_per_sample);
+    bits_ = depths.front();
+    const std::uint32_t format = one(sample_format, 1);
+    constexpr std::uint32_t format_unsigned = 1;
+    const bool right = is_texture() ? format == format_unsigned && (bits_ == 8 || bits_ == 16)
+                                    : format == format_float && (bits_ == 16 || bits_ == 32);
+    if (right &&
+        std::all_of(depths.begin(), depths.end(), [&](std::uint32_t d) { return d == bits_; })) {
+      return;
+    }
+    in_.fail("has " + std::to_string(bits_) + "-bit " +
+             (format == format_float ? "floats" : "integers") + "; allowed: " +
+             (is_texture() ? "8- and 16-bit unsigned integers" : "16- and 32-bit floats"));
+  }
+
+  /// Where texels stand, and that alpha is not multiplied into their colours.
+  void check_texture() const {
+    if (one(orientation, 1) != 1) {
+      in_.fail("has orientation " + std::to_string(one(orientation, 1)) + "; allowed: 1");
+    }
+    constexpr std::uint32_t associated = 1;
+    if (one(extra_samples, 0) == associated) {
+      in_.fail("has alpha that is multiplied into its colours; allowed: unassociated alpha");
     }
   }
 
@@ -189,6 +227,7 @@ class TiffGuard {
 
   std::vector<std::uint8_t> plain_;
   CheckedBytes in_;
+  Kind kind_;
   bool little_ = true;
   std::map<std::uint16_t, Values> tags_;
   std::uint32_t width_ = 0, height_ = 0, samples_ = 0, bits_ = 0;
@@ -197,7 +236,16 @@ class TiffGuard {
 }  // namespace
 
 std::vector<std::uint8_t> plain_tiff(std::span<const std::uint8_t> tiff, const std::string& label) {
-  return TiffGuard(tiff, label).run();
+  return TiffGuard(tiff, label, TiffGuard::Kind::picture).run();
+}
+
+std::vector<std::uint8_t> plain_tiff_texture(std::span<const std::uint8_t> tiff,
+                                             const std::string& label) {
+  return TiffGuard(tiff, label, TiffGuard::Kind::texture).run();
+}
+
+std::uint64_t tiff_texels(std::span<const std::uint8_t> tiff, const std::string& label) {
+  return TiffGuard(tiff, label, TiffGuard::Kind::texture).pixels();
 }
 
 }  // namespace lacuna

@@ -214,6 +214,8 @@ class PairedBdpt final : public Bdpt {
       const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
       const std::uint32_t pixel = pairs.eye.pixels[at.path];
       Rgb sum(0, 0, 0);
+      // Eye and light have each met a blended surface with probability alpha: once too often.
+      const float covered = pass.context.scene.coverage(v.surface);
       photons_.for_each_at(
           v, pairs.eye.states[at.path].rng, [&](const Photon& p, float, float count) {
             if (p.index + at.depth > settings_.max_depth) return;
@@ -221,8 +223,10 @@ class PairedBdpt final : public Bdpt {
             if (is_black(value)) return;
             const auto w = static_cast<float>(merge_weight(eye, p, counts));
             sum += value * w;
-            layers_.merge(pass.context.layers, p.index + 1, at.depth + 1, {pixel, value, w});
+            layers_.merge(pass.context.layers, p.index + 1, at.depth + 1,
+                          {pixel, value / covered, w});
           });
+      sum /= covered;
       Base::contribute(pass, pairs.eye, at.path, at.depth, sum);
     }
     pairs.look_ups.clear();

@@ -288,7 +288,9 @@ class PhotonMapping::TilePass {
                         add(p, double(distance2) / radius2, count);
                       });
     }
-    return Rgb(sum / (std::numbers::pi * radius2));
+    // Eye and light have each met a blended surface with probability alpha: once too often.
+    const double covered = double(context_.scene.coverage(v.surface));
+    return Rgb(sum / (std::numbers::pi * radius2 * covered));
   }
 
   /// Kernel of the density estimate at squared distance `d2`, in units of the radius; its mean over

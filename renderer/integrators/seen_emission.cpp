@@ -62,7 +62,7 @@ std::vector<Range> seen_ranges(const PrepareContext& context) {
     std::vector<Ray> rays;
     for (int x = 0; x < camera.width(); ++x) {
       Rng rng(0, 0, first + static_cast<std::size_t>(x), Rng::Purpose::emission_ranges);
-      stratified(2, rng, [&](const V2f& u) { rays.push_back(camera.sample({x, y}, u)); });
+      stratified(2, rng, [&](const V2f& u) { rays.push_back(camera.sample({x, y}, u, rng)); });
     }
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> is_hit(rays.size());
@@ -90,7 +90,7 @@ float difference_around(const std::vector<Range>& seen, const V2i& size, const V
 
 /// The position of a triangle in the film.
 struct SeenTriangle {
-  std::array<V3f, 4> points;             ///< the corners and the centre, from the eye
+  std::array<V3f, 4> points;             ///< the corners and the centre
   V2f low{HUGE_VALF}, high{-HUGE_VALF};  ///< the box around it in the film, pixels
 };
 /// None if a corner is not in the film.
@@ -98,11 +98,13 @@ std::optional<SeenTriangle> seen_triangle(const Camera& camera, const Mesh& mesh
                                           const std::array<std::uint32_t, 3>& corners) {
   SeenTriangle t;
   for (std::size_t k = 0; k < 3; ++k) {
-    const V3f edge = mesh.positions[corners[k]] - camera.position();
+    const V3f& corner = mesh.positions[corners[k]];
+    const V3f eye = camera.eye(corner);
+    const V3f edge = corner - eye;
     if (!(edge.length2() > 0)) return std::nullopt;
-    const std::optional<V2f> p = camera.project(edge.normalized());
+    const std::optional<V2f> p = camera.project(eye, edge.normalized());
     if (!p) return std::nullopt;
-    t.points[k] = edge;
+    t.points[k] = corner;
     t.low = V2f(std::min(t.low.x, p->x), std::min(t.low.y, p->y));
     t.high = V2f(std::max(t.high.x, p->x), std::max(t.high.y, p->y));
   }
@@ -126,7 +128,8 @@ void for_each_small_emitter(const PrepareContext& context, At&& at) {
       const std::optional<SeenTriangle> t = seen_triangle(camera, mesh, corners);
       if (!t || t->high.x - t->low.x > small || t->high.y - t->low.y > small) continue;
       const bool hidden = std::ranges::all_of(t->points, [&](const V3f& p) {
-        return context.scene.rays().occluded({camera.position(), p * 0.999F, 1.0F});
+        const V3f eye = camera.eye(p);
+        return context.scene.rays().occluded({eye, (p - eye) * 0.999F, 1.0F});
       });
       if (hidden) continue;
       const V2i last(std::min(camera.width() - 1, int(t->high.x)),
@@ -192,7 +195,7 @@ Rgb SeenEmission::mean(const IterationContext& context, std::size_t pixel, int n
   const auto count = static_cast<std::size_t>(n);
   for (std::size_t k = 0; k < count; ++k) {
     Rng rng = context.path_numbers(pixel, k, count, Rng::Purpose::emission_means);
-    rays[k] = context.camera.sample(at, rng.next2());
+    rays[k] = context.camera.sample(at, rng.next2(), rng);
   }
   context.scene.rays().intersect(std::span(rays).first(count), hits, is_hit);
   counters.rays += count;
@@ -215,7 +218,7 @@ Counters SeenEmission::add(const IterationContext& context, double samples, Imag
       float n = 0;
       const bool uneven = known_[index] != even;
       stratified(uneven ? side : 1, rng, [&](const V2f& u) {
-        sum += emission_along(context.scene, context.camera.sample(pixel, u));
+        sum += emission_along(context.scene, context.camera.sample(pixel, u, rng));
         ++n;
       });
       counters.samples += static_cast<std::uint64_t>(n);

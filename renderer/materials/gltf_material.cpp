@@ -79,6 +79,9 @@ SurfaceParams surface_params(const Material& material, Textures textures,
     roughness *= t.rgb.y;
     p.metallic *= t.rgb.z;
   }
+  if (material.textured_glossiness) {
+    roughness = 1 - (1 - roughness) * texel(material.specular_color_texture).a;
+  }
   p.alpha = roughness * roughness;
   p.transmission = material.transmission * texel(material.transmission_texture).rgb.x;
 

@@ -31,8 +31,23 @@ void PathBuilder::keep(const WholePath& path, int first, int last) {
 }
 
 void PathBuilder::keep_eye(const WholePath& path, int first) {
+  for (std::size_t i = kept_eye_; i < eye_.size(); ++i) pool_.give_back(eye_[i].vertex);
   eye_.assign(path.nodes.begin(), path.nodes.begin() + first + 1);
   kept_eye_ = eye_.size();
+  if (measure_.camera().parallel() && first == 0) renew_eye(measure_.camera().position());
+}
+
+void PathBuilder::renew_eye(const V3f& x) {
+  eye_.assign(1, {pool_.take(), false, false});
+  kept_eye_ = 0;
+  Vertex& v = pool_[eye_.front().vertex].v;
+  v = Vertex{};
+  v.surface.x = x;
+}
+
+void PathBuilder::choose_eye(Rng& rng) {
+  const Camera& camera = measure_.camera();
+  if (camera.has_lens()) renew_eye(camera.eye(camera.position(), rng.next2()));
 }
 
 void PathBuilder::keep_light(const WholePath& path, int last) {
@@ -65,7 +80,10 @@ bool PathBuilder::sample_from_light(int n, Rng& rng) {
 }
 
 bool PathBuilder::look_through(const V2f& at) {
-  return arrive(measure_.camera().ray(at.x, at.y), eye_);
+  V3f& x = pool_[eye_.front().vertex].v.surface.x;
+  const Ray ray = measure_.camera().ray(at.x, at.y, x);
+  if (measure_.camera().parallel()) x = ray.o;
+  return arrive(ray, eye_);
 }
 
 bool PathBuilder::arrive(const Ray& ray, std::vector<PathNode>& end) {
@@ -175,6 +193,11 @@ bool PathBuilder::connect(WholePath& path) {
   if (!light_.empty() && vertex(eye_.back()).kind == Vertex::Kind::background) return false;
   eye_.back().delta = false;
   if (!light_.empty()) light_.back().delta = false;
+  if (measure_.camera().parallel() && eye_.size() == 1) {
+    const Vertex& seen = vertex(light_.back());
+    if (seen.kind == Vertex::Kind::background) return false;
+    pool_[eye_.front().vertex].v.surface.x = measure_.camera().eye(seen.surface.x);
+  }
   path.nodes.assign(eye_.begin(), eye_.end());
   path.nodes.insert(path.nodes.end(), light_.rbegin(), light_.rend());
   return true;

@@ -23,13 +23,16 @@ class PathBuilder {
   }
 
   /// Starts with the nodes of `path` up to x_first and from x_last; no nodes at the light if `last`
-  /// is k + 1.
+  /// is k + 1. In a parallel projection x_0 is that of x_1: alone it is not kept, but new.
   void keep(const WholePath& path, int first, int last);
   /// Replaces the kept nodes of one part: up to x_first, or from x_last. Nothing may have been
   /// appended to that part.
   void keep_eye(const WholePath& path, int first);
   void keep_light(const WholePath& path, int last);
 
+  /// Makes x_0 a new point of the lens, uniformly distributed. Only x_0 may be in the eye's part.
+  /// Without a lens it does nothing.
+  void choose_eye(Rng& rng);
   /// Appends `n` vertices sampled from the eye's end: a uniform film position, then BSDFs.
   bool sample_from_eye(int n, Rng& rng);
   /// Appends `n` vertices sampled from the light's end; if the part is empty, the first is a point
@@ -70,6 +73,7 @@ class PathBuilder {
 
  private:
   const Vertex& vertex(const PathNode& n) const { return pool_[n.vertex].v; }
+  void renew_eye(const V3f& x);
   bool arrive(const Ray& ray, std::vector<PathNode>& end);
   bool scatter(std::vector<PathNode>& end, Transport transport, Rng& rng);
   bool start_light(Rng& rng);

@@ -104,7 +104,8 @@ void PathEvaluator::walk_eyes(std::span<const Point> points, Counters& counters)
     const auto pixel = std::size_t(film.pixel.y) * std::size_t(context_.camera.width()) +
                        std::size_t(film.pixel.x);
     point_of_[eyes_.states.size()] = i;
-    eyes_.start(context_.camera, rng, context_.camera.sample(film.pixel, film.u), pixel);
+    const Ray ray = context_.camera.sample(film.pixel, film.u, rng);
+    eyes_.start(context_.camera, rng, ray, pixel);
   }
   counters.samples += eyes_.states.size();
   Walk walk(context_.scene, guide_,

@@ -5,10 +5,13 @@
 namespace lacuna {
 namespace {
 
-/// The edge between x_i and x_{i+1}; false if they coincide.
-bool make_edge(const Vertex& near_eye, const PathVertex& near_light, bool last, PathEdge& edge) {
-  const Connection c = edge_between(VertexPlace{near_eye}, VertexPlace{near_light.v});
+/// The edge between x_i and x_{i+1}; false if they coincide. `parallel`: x_i is the eye of a
+/// parallel projection, whose densities are per area whatever the edge's length.
+bool make_edge(const Vertex& near_eye, const PathVertex& near_light, bool last, bool parallel,
+               PathEdge& edge) {
+  Connection c = edge_between(VertexPlace{near_eye}, VertexPlace{near_light.v});
   if (!(c.distance2 > 0)) return false;
+  if (parallel) c.distance2 = 1;
   edge.w = c.w;
   // A point in space has no surface: its density is not per area.
   const bool surface = !last || near_light.emitter.kind == EmitterPoint::Kind::area;
@@ -61,12 +64,12 @@ bool PathMeasure::evaluate(WholePath& path, const VertexPool& pool) const {
   path.luminance = 0;
   for (int i = 0; i < k; ++i) {
     if (!make_edge(pool[path.node(i).vertex].v, pool[path.node(i + 1).vertex], i + 1 == k,
-                   path.edges[static_cast<std::size_t>(i)])) {
+                   i == 0 && camera_.parallel(), path.edges[static_cast<std::size_t>(i)])) {
       return false;
     }
   }
   const V3f& first = path.edge(0).w;
-  const std::optional<V2f> film = camera_.project(first);
+  const std::optional<V2f> film = camera_.project(pool[path.node(0).vertex].v.surface.x, first);
   if (!film) return false;
   path.film = *film;
   long double scale =

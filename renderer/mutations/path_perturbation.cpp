@@ -54,6 +54,11 @@ bool PathPerturbation::propose_from_eye(const WholePath& path, int start, PathBu
   first_ = start + 1;
   if (path.node(start).delta) return false;
   builder.keep(path, start, k + 1);
+  // Half of the moves of the film position also choose the point of the lens anew: the probability
+  // is the same both ways.
+  if (start == 0 && builder.measure().camera().has_lens() && rng.decide(0.5F)) {
+    builder.choose_eye(rng);
+  }
   for (int i = start + 1;; ++i) {
     const PathNode& before = path.node(i - 1);
     bool found = false;

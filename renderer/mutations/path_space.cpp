@@ -44,6 +44,7 @@ bool PathSpaceMutation::sample_anew(const Chain& c, PathBuilder& builder) const 
   const int k = lengths_.sample(c.rng->next_choice());
   const int light = static_cast<int>(c.rng->below(static_cast<std::uint64_t>(k) + 1));
   builder.keep(c.current, 0, c.current.edge_count() + 1);
+  builder.choose_eye(*c.rng);
   if (!builder.sample_from_light(light, *c.rng) || !builder.sample_from_eye(k - light, *c.rng)) {
     return false;
   }
@@ -71,7 +72,9 @@ void PathSpaceMutation::evaluate(Chain& c, Workspace& workspace, Counters& count
   workspace.stop.check(workspace.context);
   ++counters.samples;
   drop_proposal(c);
-  c.pool[c.current.node(0).vertex].v.surface.x = workspace.measure.camera().position();
+  if (c.current.edge_count() == 0) {
+    c.pool[c.current.node(0).vertex].v.surface.x = workspace.measure.camera().position();
+  }
   PathBuilder builder(workspace.measure, c.pool, workspace.parts, counters);
   c.pending = propose(c, builder);
   if (!c.pending) builder.abandon();

@@ -11,8 +11,8 @@ namespace lacuna {
 /// emitter. Visibility is not included: the caller traces shadow_ray().
 struct Connection {
   V3f w{0, 0, 0};         ///< unit, from the eye's endpoint to the light's
-  float distance2 = 1;    ///< squared length; 1 if the light's endpoint is at infinity
-  float distance = 1;     ///< its root
+  float distance2 = 1;    ///< squared length; 1 if one of the endpoints is at infinity
+  float distance = 1;     ///< length; 1 if the light's endpoint is at infinity
   bool infinite = false;  ///< the light's endpoint is at infinity
   /// scatter() of both endpoints over distance2, times the transmittance: without MIS weight and
   /// visibility.
@@ -42,6 +42,9 @@ Connection edge_between(const Eye& eye, const Light& light) {
     c.distance2 = edge.length2();
     c.distance = std::sqrt(c.distance2);
     if (c.distance2 > 0) c.w = edge / c.distance;
+    if constexpr (requires { eye.parallel(); }) {
+      if (eye.parallel() && c.distance2 > 0) c.distance2 = 1;
+    }
   }
   return c;
 }

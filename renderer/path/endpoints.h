@@ -117,16 +117,19 @@ inline void place_on(const EmitterPoint& e, Vertex& v) {
   v.surface.offset = e.kind == EmitterPoint::Kind::area ? e.offset : 0.0F;
 }
 
-/// The eye, a point.
+/// A point of the eye (Camera::eye()).
 struct EyeEndpoint {
   const Camera& camera;
+  V3f point;
   static constexpr int index = 0;
 
-  const V3f& x() const { return camera.position(); }
+  const V3f& x() const { return point; }
+  /// Whether densities are per area across the edge, whatever its length.
+  bool parallel() const { return camera.parallel(); }
   /// The importance emitted along `w`; Camera::splat() spreads it over pixels.
   Rgb scatter(const V3f& w) const { return Rgb(camera.density(w).value); }
   double pdf(const V3f& w) const { return double(camera.density(w).value); }
-  V3f origin(const V3f&) const { return camera.position(); }
+  V3f origin(const V3f&) const { return point; }
 };
 
 }  // namespace lacuna

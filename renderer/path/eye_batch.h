@@ -21,8 +21,9 @@ struct EyeBatch {
   void start(const Camera& camera, const Rng& rng, const Ray& ray, std::size_t pixel) {
     const std::size_t i = states.size();
     const std::span<Vertex> path = std::span(vertices).subspan(i * stride, stride);
-    path[0].kind = Vertex::Kind::eye;
-    path[0].surface.x = ray.o;
+    // Parallel rays come from infinity, as to_area() measures them.
+    path[0].kind = camera.parallel() ? Vertex::Kind::background : Vertex::Kind::eye;
+    path[0].surface.x = camera.parallel() ? -ray.d : ray.o;
     // The eye's density and its importance cancel: the throughput is 1.
     states.push_back({.rng = rng, .ray = ray, .p = camera.density(ray.d), .path = path});
     pixels[i] = static_cast<std::uint32_t>(pixel);

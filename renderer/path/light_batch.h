@@ -56,6 +56,7 @@ class LightBatch {
     for (std::size_t i = 0; i < rngs.size(); ++i) {
       Rng rng = rngs[i];
       Rng::FinePoint at = rng.next_fine_point();
+      lens_[i] = setting_.camera.lens_numbers(rng);
       if (!choices.empty()) at.x = std::uint64_t{choices[i]} << 32 | (at.x & 0xffffffff);
       if (start(i, at) && goes_on(i, 1)) start_walk(i, rng);
     }
@@ -170,10 +171,11 @@ class LightBatch {
   /// splat)` if the unoccluded contribution is not black.
   template <class Use>
   void connect_to_eye(std::size_t i, int index, Use&& use) const {
+    const V2f& lens = lens_[i < size ? i : branch(i).origin];
     if (index == 0) {
-      if (!emitters_[i].delta()) connect_to_eye(EmitterEndpoint{emitters_[i], guide_}, use);
+      if (!emitters_[i].delta()) connect_to_eye(EmitterEndpoint{emitters_[i], guide_}, lens, use);
     } else if (connectible(i, index)) {
-      connect_to_eye(end(i, index), use);
+      connect_to_eye(end(i, index), lens, use);
     }
   }
 
@@ -274,10 +276,13 @@ class LightBatch {
   }
 
   template <class End, class Use>
-  void connect_to_eye(const End& light, Use& use) const {
-    const EyeEndpoint eye{setting_.camera};
+  void connect_to_eye(const End& light, const V2f& lens, Use& use) const {
+    const Camera& camera = setting_.camera;
+    // Two directions from infinity do not meet.
+    if (camera.parallel() && at_infinity(light)) return;
+    const EyeEndpoint eye{camera, camera.eye(light.x(), lens)};
     const V3f to = at_infinity(light) ? light.x() : light.x() - eye.x();
-    const std::optional<V2f> at = setting_.camera.project(to.normalized());
+    const std::optional<V2f> at = camera.project(eye.x(), to.normalized());
     if (!at) return;
     const Connection c = connect(eye, light);
     if (!c) return;
@@ -301,6 +306,7 @@ class LightBatch {
   std::array<std::size_t, size> path_of_{};  // of each state in states_, its path's index
   std::array<int, size> length_{};
   std::array<EmitterPoint, size> emitters_{};
+  std::array<V2f, size> lens_{};  // where each path that walk() started may meet the lens
   ShadowQueue<UnshadowedSplat> queue_;
 };
 

@@ -30,14 +30,14 @@ double footprint(const Scene& scene, const Camera& camera) {
   const auto at = [](int i, int size) {
     return (static_cast<float>(i) + 0.5F) * static_cast<float>(size) / float{steps};
   };
-  const auto angle = [&](const V3f& w) { return 1 / std::sqrt(double(camera.density(w).value)); };
   for (int i = 0; i < steps * steps; ++i) {
     const Ray ray = camera.ray(at(i % steps, camera.width()), at(i / steps, camera.height()));
     Hit hit{};
     if (!scene.rays().intersect(ray, hit)) continue;
-    sides.push_back((V3d(scene.surface(ray, hit).x) - V3d(ray.o)).length() * angle(ray.d));
+    const double distance = (V3d(scene.surface(ray, hit).x) - V3d(ray.o)).length();
+    sides.push_back(camera.pixel_side(ray.d, distance));
   }
-  if (sides.empty()) return scene.bounds().radius() * angle(camera.forward());
+  if (sides.empty()) return camera.pixel_side(camera.forward(), scene.bounds().radius());
   const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
   std::nth_element(sides.begin(), middle, sides.end());
   return *middle;

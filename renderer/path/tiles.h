@@ -72,7 +72,7 @@ struct CameraSample {
 
   CameraSample(const IterationContext& context, std::size_t pixel)
       : rng(context.path_numbers(pixel, Rng::Purpose::eye_path)),
-        ray(context.camera.sample(column_row(pixel, context.camera.width()), rng.next2())) {}
+        ray(context.camera.sample(column_row(pixel, context.camera.width()), rng.next2(), rng)) {}
 
  private:
   static V2i column_row(std::size_t pixel, int width) {

@@ -47,10 +47,15 @@ struct Vertex {
 
 /// p |cos| / distance^2: the density per area at `to` of a direction `w` (unit) sampled at `from`
 /// with density `p`. The background has no area: its density stays per steradian, and rays from it
-/// have a density per area across `w` (EmitterPoint::pdf_Le). The only conversion between the
-/// measures.
+/// have a density per area across `w` (EmitterPoint::pdf_Le, Camera::density). The only conversion
+/// between the measures.
 inline Pdf<Area> to_area(Pdf<SolidAngle> p, const Vertex& from, const V3f& w, const Vertex& to) {
-  if (to.kind == Vertex::Kind::background) return Pdf<Area>(p.value);
+  if (to.kind == Vertex::Kind::background) {
+    // Of parallel rays, which leave the scene, the direction has no density: it is as good as
+    // certain, and no other technique finds it.
+    constexpr float certain = 1e30F;
+    return Pdf<Area>(from.kind == Vertex::Kind::background ? certain : p.value);
+  }
   const float cosine = abs_dot(to.surface.ng, w);
   if (from.kind == Vertex::Kind::background) return Pdf<Area>(p.value * cosine);
   return Pdf<Area>(p.value * cosine / (to.surface.x - from.surface.x).length2());

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "renderer/core/density.h"
+#include "renderer/core/rng.h"
 #include "renderer/geometry/rays.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/settings/camera_settings.h"
@@ -25,31 +26,71 @@ struct Crop {
   V2i size{0, 0};
 };
 
-/// A pinhole camera with a film of `width` x `height` square pixels. The vertical field of view is
-/// the glTF camera's; the horizontal one follows from the film.
+/// A camera with a film of `width` x `height` square pixels. The vertical extent of its view is
+/// that of CameraData; the horizontal one follows from the film, but for a panorama, which is of
+/// all directions.
+///
+/// Rays start at the eye: a point; with a lens a point on it, uniformly distributed, whose density
+/// cancels in all ratios because every method samples it alike; in a parallel projection a point on
+/// the plane of the camera, which is the eye at infinity as a directional light is an emitter
+/// there: densities of directions are then per area across the view.
 class Camera {
  public:
-  /// With `crop`, the film is that part of a larger picture of the same view.
+  /// With `crop`, the film is that part of a larger picture of the same view. Pixels of a panorama
+  /// are boxes: those of another filter would overlap at the poles.
   Camera(const CameraData& data, int width, int height, PixelFilter filter = PixelFilter::box,
          const std::optional<Crop>& crop = {});
 
   /// The ray of a sample of `pixel`, for `u` uniform in [0, 1)^2. The film position is sampled from
   /// the pixel filter, so all samples have equal weight and pixels are independent (Ernst,
-  /// Stamminger and Greiner 2006, "Filter Importance Sampling").
+  /// Stamminger and Greiner 2006, "Filter Importance Sampling"). From the centre of the lens.
   Ray sample(const V2i& pixel, const V2f& u) const;
+  /// The same from a point on the lens that `rng` chooses.
+  Ray sample(const V2i& pixel, const V2f& u, Rng& rng) const {
+    const Ray centre = sample(pixel, u);
+    return has_lens() ? through(lens_point(lens_numbers(rng)), centre.d) : centre;
+  }
 
-  /// The ray through film position (x, y), in pixels from the upper left corner. `d` is unit.
+  /// The ray through film position (x, y), in pixels from the upper left corner, from the centre of
+  /// the lens. `d` is unit.
   Ray ray(float x, float y) const;
+  /// The same from the point `eye` of the lens.
+  Ray ray(float x, float y, const V3f& eye) const {
+    const Ray centre = ray(x, y);
+    return has_lens() ? through(eye, centre.d) : centre;
+  }
 
-  /// Solid-angle density, at unit `w` in front of the camera, of one sample per pixel, uniform over
-  /// the film: the number of pixels per steradian. It is also the importance of the eye: a light
-  /// path connected to the eye contributes its radiance times density() times the weights of
-  /// splat().
+  /// Density, at unit `w` in front of the camera, of one sample per pixel, uniform over the film:
+  /// the number of pixels per steradian, or of a parallel projection per area across the view. It
+  /// is also the importance of the eye: a light path connected to the eye contributes its radiance
+  /// times density() times the weights of splat(). The same from all points of a lens: where the
+  /// plane in focus is seen at distance d = focus / cos, a pixel covers d^2 / cos of it.
   Pdf<SolidAngle> density(const V3f& w) const;
 
-  /// The film position, in pixels, of light that arrives from unit `w` (away from the eye); none
-  /// outside the film.
-  std::optional<V2f> project(const V3f& w) const;
+  /// The film position, in pixels, of light that arrives at the point `eye` from unit `w` (away
+  /// from the eye); none outside the film.
+  std::optional<V2f> project(const V3f& eye, const V3f& w) const;
+  /// The same at position().
+  std::optional<V2f> project(const V3f& w) const { return project(position_, w); }
+
+  /// The point of the eye from which `x` is seen: the centre of the lens, or in a parallel
+  /// projection the foot of `x` on the plane of the camera.
+  V3f eye(const V3f& x) const {
+    if (!parallel()) return position_;
+    const V3d from_plane = V3d(x) - V3d(position_);
+    return V3f(V3d(x) - back_ * from_plane.dot(back_));
+  }
+  /// The same from the point of the lens that `lens` chooses (lens_numbers()).
+  V3f eye(const V3f& x, const V2f& lens) const { return has_lens() ? lens_point(lens) : eye(x); }
+  /// Uniform in [0, 1)^2, to choose a point of the lens; draws nothing without a lens.
+  V2f lens_numbers(Rng& rng) const { return has_lens() ? rng.next2() : V2f(0, 0); }
+  bool has_lens() const { return aperture_ > 0; }
+  /// Whether all rays are parallel: the eye is at infinity.
+  bool parallel() const { return projection_ == Projection::orthographic; }
+  /// Side, in scene units, of what a pixel sees at that distance along unit `w`.
+  double pixel_side(const V3f& w, double distance) const {
+    return (parallel() ? 1 : distance) / std::sqrt(double(density(w).value));
+  }
 
   /// Calls `pixel(index, weight)` for the pixels whose filter covers film position `at`: index in
   /// the film, top row first, weight > 0. The filter's integral over the film is 1.
@@ -74,6 +115,7 @@ class Camera {
   int height() const { return height_; }
   /// The distance, in pixels, to which the filter reaches beyond the film.
   float margin() const { return filter_ == PixelFilter::box ? 0.0F : 0.5F; }
+  /// The centre of the lens, or the middle of a parallel projection's film.
   const V3f& position() const { return position_; }
   const V3f& forward() const { return forward_; }
 
@@ -86,12 +128,26 @@ class Camera {
   /// The tent filter at distance `x` from the pixel's upper left corner.
   static float tent(float x) { return std::max(0.0F, 1 - std::abs(x - 0.5F)); }
 
+  /// A point of the lens, uniformly distributed.
+  V3f lens_point(const V2f& u) const;
+  /// The ray from `eye`, on the lens, to where the ray along `d` from its centre is in focus.
+  Ray through(const V3f& eye, const V3f& d) const;
+  V2f film_of_panorama(const V3f& w) const;
+
   int width_, height_;
   V3f position_;
   V3f forward_;
   PixelFilter filter_;
-  double pixel_;          // side of a pixel on the film plane at unit distance
-  V3d origin_, dx_, dy_;  // the film plane at unit distance: origin_ + x dx_ + y dy_
+  Projection projection_;
+  double aperture_, focus_;
+  int blades_;
+  V3d right_, up_, back_;  // unit axes
+  /// Perspective: side of a pixel on the film plane at unit distance; orthographic: scene units.
+  double pixel_;
+  /// Perspective: the film plane at unit distance, origin_ + x dx_ + y dy_, from the eye;
+  /// orthographic: the plane of the camera, from position_.
+  V3d origin_, dx_, dy_;
+  V2f whole_, first_;  // panorama: size of the whole picture, and where the film begins, pixels
 };
 
 }  // namespace lacuna

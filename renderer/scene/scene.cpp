@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/frame.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/geometry/alpha_mask.h"
 #include "renderer/geometry/surface_contact.h"
-#include "renderer/geometry/uv_tangents.h"
+#include "renderer/geometry/tangent_frame.h"
 #include "renderer/images/guards.h"
 #include "renderer/images/image_read.h"
 #include "renderer/materials/gltf_material.h"
@@ -65,26 +66,40 @@ std::optional<SurfaceContact> Scene::find_contact(const V3f& x) const {
   return lacuna::find_contact({*data_, rays_, bounds_}, x);
 }
 
+Rgb Scene::vertex_color(const Surface& s) const {
+  const Mesh& mesh = data_->meshes[s.mesh];
+  const V4f c = mesh.mix(mesh.colors, s.triangle, barycentric(s));
+  return {c.x, c.y, c.z};
+}
+
+void Scene::make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) const {
+  SurfaceParams params = surface_params(material(s), data_->textures, s.uv);
+  if (material(s).vertex_colors) params.base_color *= vertex_color(s);
+  place.emplace(params, s.ng, s.ns);
+}
+
+float Scene::blended_coverage(const Surface& s) const {
+  const Mesh& mesh = data_->meshes[s.mesh];
+  if (!AlphaMask::needed(*data_, mesh)) return 1;
+  constexpr float least = 0x1p-20F;  // where rounding moves a hit to a point of alpha 0
+  return std::max(least, AlphaMask(*data_, mesh).coverage(s.triangle, barycentric(s)));
+}
+
 void Scene::make_uniform_lobes() {
   uniform_lobes_.resize(data_->materials.size());
   for (std::size_t i = 0; i < data_->materials.size(); ++i) {
     const Material& m = data_->materials[i];
-    bool textured = false;
-    m.for_each_scattering_texture([&](const TextureRef&) { textured = true; });
-    if (!textured) uniform_lobes_[i] = surface_params(m, {}, {});
+    bool varies = m.vertex_colors;
+    m.for_each_scattering_texture([&](const TextureRef&) { varies = true; });
+    if (!varies) uniform_lobes_[i] = surface_params(m, {}, {});
   }
 }
 
 void Scene::set_tangents(const Surface& s, Bsdf& bsdf) const {
-  auto [u, v] = uv_tangents(data_->meshes[s.mesh], s.triangle,
-                            material(s).extensions.anisotropy.texture.uv_set);
-  if (s.instance != no_instance) {
-    const auto& axes = data_->instances[s.instance].axes;
-    for (V3f* t : {&u, &v}) {
-      *t = (t->x * axes[0] + t->y * axes[1] + t->z * axes[2]).normalized();
-    }
-  }
-  bsdf.set_tangents(u, v);
+  const auto frame =
+      tangent_frame(*data_, s, barycentric(s), material(s).extensions.anisotropy.texture);
+  const Frame any(s.ns);
+  bsdf.set_tangents(frame ? frame->s : any.s, frame ? frame->t : any.t);
 }
 
 void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
@@ -96,7 +111,9 @@ void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
     const Material& m = data_->materials[mesh.material];
     if (AlphaMask::needed(*data_, mesh)) want(m.base_color_texture);
     if (needs.emission && m.emits()) want(m.emission_texture);
-    if (needs.materials) m.for_each_scattering_texture(want);
+    if (!needs.materials) continue;
+    m.for_each_scattering_texture(want);
+    want(m.normal_texture);
   }
   std::vector<Texture*> small;
   std::vector<Texture*> large;

@@ -70,7 +70,8 @@ class Scene {
   /// Radiance that leaves `s` in unit direction `wo`.
   Rgb emitted(const Surface& s, const V3f& wo) const {
     if (!s.emits || (!s.emits_behind && dot(wo, s.ng) <= 0)) return {0, 0, 0};
-    return emission(material(s), data_->textures, s.uv);
+    const Rgb uniform = emission(material(s), data_->textures, s.uv);
+    return material(s).emits_vertex_colors() ? uniform * vertex_color(s) : uniform;
   }
   /// Constructs the BSDF at `s` in `place`, because a move would be slow. Requires
   /// SceneNeeds::materials.
@@ -78,7 +79,7 @@ class Scene {
     if (const auto& lobes = uniform_lobes_[s.material]) {
       place.emplace(*lobes, s.ng, s.ns);
     } else {
-      place.emplace(surface_params(material(s), data_->textures, s.uv), s.ng, s.ns);
+      make_varying_bsdf(s, place);
     }
     if (place->needs_tangents()) set_tangents(s, *place);
   }
@@ -88,15 +89,28 @@ class Scene {
   const Medium* medium(const Surface& s, const V3f& w) const {
     return dot(w, s.ng) < 0 ? material(s).medium() : nullptr;
   }
+  /// The probability with which a ray hits the surface at `s`, above 0: below 1 only with alphaMode
+  /// BLEND.
+  float coverage(const Surface& s) const { return material(s).blend ? blended_coverage(s) : 1.0F; }
   /// Prefetches the texels that make_bsdf() reads.
   void prefetch_bsdf(const Surface& s) const {
     if (!uniform_lobes_[s.material]) prefetch_textures(material(s), data_->textures, s.uv);
+  }
+  /// Barycentric (u, v) of a surface in its triangle, as in Hit.
+  V2f barycentric(const Surface& s) const {
+    const Hit hit{.mesh = s.mesh, .triangle = s.triangle, .instance = s.instance};
+    return placed_triangle(*data_, triangles_, hit).barycentric(s.x);
   }
   const Material& material(const Surface& s) const { return data_->materials[s.material]; }
   /// The surfaces that contain the point `x`; none if it lies in no surface.
   std::optional<SurfaceContact> find_contact(const V3f& x) const;
 
  private:
+  /// COLOR_0; the material has vertex colours.
+  Rgb vertex_color(const Surface& s) const;
+  // Not inline: make_bsdf() is called at every hit, and most materials are uniform.
+  void make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) const;
+  float blended_coverage(const Surface& s) const;
   void find_contacts(const ThreadPool& pool);
   void make_uniform_lobes();
   void set_tangents(const Surface& s, Bsdf& bsdf) const;
@@ -108,7 +122,7 @@ class Scene {
   bool has_media_ = false;
   TriangleTable triangles_;
   std::vector<std::optional<Lobes>>
-      uniform_lobes_;  // of each material; none if a texture affects its scattering
+      uniform_lobes_;  // of each material; none if its scattering varies over its surfaces
   RayCaster rays_;
   std::unique_ptr<EmitterSet> emitters_;
 };

@@ -9,7 +9,7 @@
 namespace lacuna {
 
 /// All triangles of a scene, for the analysis of its empty space, including lights, glass and
-/// masked surfaces.
+/// masked and blended surfaces.
 TriangleSoup triangle_soup(const SceneData& scene);
 
 /// SceneData::geometry_hash as 16 hexadecimal digits: the key of all analyses.

@@ -7,6 +7,19 @@
 
 namespace lacuna {
 
+/// What the numbers of a file's punctual lights are.
+enum class LightUnits { file, radiometric, photometric };
+template <>
+struct EnumTable<LightUnits> {
+  static constexpr std::array<EnumValue<LightUnits>, 3> values{{
+      {LightUnits::file, "file",
+       "read 1:1 as W/sr and W/m^2, with a warning where the file's exporter multiplies watts by "
+       "683 lm/W"},
+      {LightUnits::radiometric, "radiometric", "W/sr and W/m^2: read 1:1"},
+      {LightUnits::photometric, "photometric", "cd and lx of 683 lm/W: divided by 683"},
+  }};
+};
+
 /// A change of one of the scene's materials, to test a method with, for example, a glossy floor.
 struct MaterialChange {
   std::string name;

@@ -81,7 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace lacuna;
   static const fuzz::InputFile input("input.glb");
   try {
-    SceneTime time;
+    SceneChoice time;
     if (size / 4 % 2 == 1) time.seconds = 0.5;
     SceneData scene = load_gltf(input.holding({data, size}), nullptr, time);
     fuzz::expect(test::broken_promise(scene).empty(), "a scene keeps the promises of SceneData");

@@ -51,6 +51,20 @@ def textures():
     make("texture/rgb_large.jpg", size="40x24", channels=3, save=("-d", "uint8", "--quality", "30"))
 
 
+# Two rows of two texels with alpha, by libwebp: lossless, and lossy in the extended format.
+WEBP = {"lossless": (
+    "524946463c000000574542505650384c300000002f014000101f20104892dd1f610d8100c1ff982b02018225ff6f0402c41a65d2"
+    "85993b5205356d1bb0f84d3a22fa1f1c"), "lossy": (
+    "524946467600000057454250565038580a00000010000000010000010000414c50480500000000ff8040ff00565038204a000000"
+    "7002009d012a0200020000000025a00274ba01f801fa00033295df0000fefec1fffd67ffcc7f7643ff926fffd5275ae962b42b7f"
+    "63fff70c0026376ffee187ffe644ef36d5dffe620000")}
+
+
+def webps():
+    for name, text in WEBP.items():
+        (CORPUS / f"texture/{name}.webp").write_bytes(bytes.fromhex(text))
+
+
 class Buffer:
     """Collects the binary of a scene; each call gives the index of an accessor or of a bufferView."""
 
@@ -158,6 +172,42 @@ def posed_scene(buffer):
             "cameras": [{"type": "perspective", "perspective": {"yfov": .8, "znear": .01}}]}
 
 
+def featured_scene(buffer):
+    """A square with tangents and colours of bytes; a normal map, blending, old and unlit materials, variants, a WebP."""
+    corners = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+
+    def floats(kind, *values):
+        return buffer.accessor(buffer.view(struct.pack(f"<{len(values)}f", *values)), 5126, kind, 4)
+    attributes = {"POSITION": floats("VEC3", *(x for c in corners for x in c)),
+                  "NORMAL": floats("VEC3", *(0, 0, 1) * 4),
+                  "TANGENT": floats("VEC4", *(1, 0, 0, -1) * 4),
+                  "TEXCOORD_0": floats("VEC2", *(x for c in corners for x in c[:2])),
+                  "COLOR_0": buffer.accessor(buffer.view(bytes(range(0, 240, 15))), 5121, "VEC4", 4, normalized=True)}
+    indices = buffer.accessor(buffer.view(bytes((0, 1, 2, 0, 2, 3))), 5121, "SCALAR", 6)
+    variants = {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}
+    image = buffer.view(bytes.fromhex(WEBP["lossy"]))
+    texture = {"index": 0}
+    materials = [{"alphaMode": "BLEND", "normalTexture": {"index": 0, "scale": 2},
+                  "pbrMetallicRoughness": {"baseColorTexture": texture}},
+                 {"extensions": {"KHR_materials_unlit": {}}},
+                 {"extensions": {"KHR_materials_pbrSpecularGlossiness": {
+                     "diffuseFactor": [.5, .4, .3, .8], "specularGlossinessTexture": texture}}}]
+    primitives = [{"attributes": attributes, "indices": indices, "material": i, "extensions": variants}
+                  for i in range(3)]
+    return {"asset": {"version": "2.0", "generator": "Khronos glTF Blender I/O v4.5.32"},
+            "scenes": [{"nodes": [0, 1, 2]}],
+            "nodes": [{"mesh": 0, "scale": [-1, 1, 1]}, {"camera": 0, "translation": [-.5, .5, 2]},
+                      {"translation": [0, 1, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+            "meshes": [{"primitives": primitives}], "materials": materials,
+            "textures": [{"extensions": {"EXT_texture_webp": {"source": 0}}}],
+            "images": [{"bufferView": image, "mimeType": "image/webp"}],
+            "cameras": [{"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 9}}],
+            "extensionsUsed": ["EXT_texture_webp", "KHR_materials_variants", "KHR_materials_unlit"],
+            "accessors": buffer.accessors, "bufferViews": buffer.views,
+            "extensions": {"KHR_materials_variants": {"variants": [{"name": "lit"}]},
+                           "KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3}]}}}
+
+
 def write_glb(name, content, buffer):
     content["buffers"] = [{"byteLength": len(buffer.bytes)}]
     text = json.dumps(content, separators=(",", ":")).encode()
@@ -176,6 +226,11 @@ def posed():
     write_glb("posed.glb", posed_scene(buffer), buffer)
 
 
+def featured():
+    buffer = Buffer()
+    write_glb("features.glb", featured_scene(buffer), buffer)
+
+
 def scenes():
     buffer = Buffer()
     content = scene(buffer)
@@ -189,5 +244,7 @@ def scenes():
 
 float_images()
 textures()
+webps()
 scenes()
 posed()
+featured()

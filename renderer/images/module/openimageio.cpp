@@ -22,6 +22,8 @@ const char* reader_name(ImageFormat format) {
       return "png";
     case ImageFormat::jpeg:
       return "jpeg";
+    case ImageFormat::webp:
+      return "webp";
     case ImageFormat::radiance_hdr:
       return "hdr";
     case ImageFormat::tiff:

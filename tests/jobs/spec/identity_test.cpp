@@ -40,6 +40,8 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"particles", [](JobSpec& s) { s.particles = ParticleSettings{.count = 9, .power = 1}; }},
     {"time", [](JobSpec& s) { s.time = 0.5; }},
     {"animation", [](JobSpec& s) { s.animation = "walk"; }},
+    {"light_units", [](JobSpec& s) { s.light_units = LightUnits::photometric; }},
+    {"variant", [](JobSpec& s) { s.variant = "red"; }},
     {"material", [](JobSpec& s) { s.material = MaterialChange{.name = "floor"}; }},
     {"seed", [](JobSpec& s) { s.seed = 2; }},
     {"sampler", [](JobSpec& s) { s.sampler = Sampler::independent; }},
@@ -72,17 +74,19 @@ std::set<std::string> keys_that_change(Name name) {
 }
 
 TEST(Identity, is_changed_by_what_decides_and_by_nothing_else) {
-  EXPECT_EQ(keys_that_change([](const JobSpec& s) { return picture_key(s); }),
-            (std::set<std::string>{"scene", "camera", "resolution", "integrator", "analysis",
-                                   "environment", "seed", "sampler", "pixel_filter", "crop",
-                                   "particles", "material", "time", "animation"}));
+  EXPECT_EQ(
+      keys_that_change([](const JobSpec& s) { return picture_key(s); }),
+      (std::set<std::string>{"scene", "camera", "resolution", "integrator", "analysis",
+                             "environment", "seed", "sampler", "pixel_filter", "crop", "particles",
+                             "material", "time", "animation", "variant", "light_units"}));
   EXPECT_EQ(keys_that_change([](const JobSpec& s) { return picture_name(s); }),
             (std::set<std::string>{"scene", "camera", "resolution", "integrator", "environment",
                                    "reference", "pixel_filter", "crop", "particles", "material",
-                                   "time", "animation"}));
-  EXPECT_EQ(keys_that_change([](const JobSpec& s) { return preparation_key(s); }),
-            (std::set<std::string>{"scene", "camera", "analysis", "environment", "particles",
-                                   "material", "threads", "time", "animation"}));
+                                   "time", "animation", "variant", "light_units"}));
+  EXPECT_EQ(
+      keys_that_change([](const JobSpec& s) { return preparation_key(s); }),
+      (std::set<std::string>{"scene", "camera", "analysis", "environment", "particles", "material",
+                             "threads", "time", "animation", "variant", "light_units"}));
 }
 
 TEST(Identity, lists_name_keys_of_the_table) {

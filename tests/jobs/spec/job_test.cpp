@@ -70,6 +70,15 @@ TEST(Job, ACameraIsANameOrAPlaceOfItsOwn) {
       "/camera/target", {"1000000000.0000002", "another point"});
   expect_one(job_problems(job(R"({"position": [1, 2, 3], "target": [1, 2, 3]})")), "/camera/target",
              {"the camera's position"});
+  const auto with = [&](const std::string& more) { return job("{" + view + ", " + more + "}"); };
+  EXPECT_TRUE(job_problems(with(R"("aperture": 0.1, "focus": 2, "blades": 6)")).empty());
+  EXPECT_TRUE(job_problems(with(R"("type": "orthographic", "height": 3)")).empty());
+  expect_one(job_problems(with(R"("type": "panorama", "aperture": 0.1)")), "/camera/aperture",
+             {"found 0.1", "allowed: type \"perspective\""});
+  expect_one(job_problems(with(R"("type": "orthographic", "fov": 20)")), "/camera/fov",
+             {"a camera that does not use it"});
+  expect_one(job_problems(with(R"("focus": 2)")), "/camera/focus", {"an aperture above 0"});
+  expect_one(job_problems(with(R"("aperture": 1, "blades": 2)")), "/camera/blades", {"3 to 64"});
   for (const char* up : {"[0, 0, 0]", "[0, 0, -2]"})
     expect_one(job_problems(job("{" + view + R"(, "up": )" + up + "}")), "/camera/up",
                {"along the view"});

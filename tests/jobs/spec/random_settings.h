@@ -121,7 +121,15 @@ inline JobSpec random_job(std::uint64_t seed) {
     }
   }
   spec.shard = std::min(spec.shard, spec.shards);
-  if (auto& camera = spec.camera.object; camera && !frame_of(*camera)) camera = CameraSettings{};
+  if (auto& camera = spec.camera.object) {
+    if (!frame_of(*camera)) camera = CameraSettings{};
+    const CameraSettings none;
+    if (camera->type != Projection::perspective) camera->aperture = 0, camera->fov = none.fov;
+    if (camera->type != Projection::orthographic) camera->height = none.height;
+    if (!(camera->aperture > 0)) camera->focus = 0, camera->blades = 0;
+    if (camera->blades < 3) camera->blades = 0;
+    if (camera->type == Projection::panorama) spec.pixel_filter = PixelFilter::box;
+  }
   if (auto* choosing = std::get_if<AutoSettings>(&spec.integrator)) {
     spec.shards = 1;
     spec.shard = 0;

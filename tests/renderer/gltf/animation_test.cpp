@@ -16,7 +16,7 @@ using test::component_s16;
 using test::GlbBuilder;
 using test::Json;
 
-SceneData load_at(const GlbBuilder& builder, const SceneTime& time) {
+SceneData load_at(const GlbBuilder& builder, const SceneChoice& time) {
   const TemporaryFolder folder;
   return load_gltf(folder.write("scene.glb", builder.glb()), nullptr, time);
 }

@@ -156,7 +156,7 @@ TEST(HostileFiles, ImagesThatCannotBeDecodedAreNamed) {
   Bytes huge = png;  // width 2^24 in IHDR
   huge[16] = 1;
   const std::vector<std::pair<Bytes, std::string>> images{
-      {Bytes{'B', 'M', 0, 0}, "neither a PNG nor a JPEG"},
+      {Bytes{'B', 'M', 0, 0}, "neither a PNG nor a JPEG, WebP or TIFF"},
       {Bytes(png.begin(), png.begin() + 8), ""},
       {Bytes(png.begin(), png.begin() + static_cast<std::ptrdiff_t>(png.size() / 2)), ""},
       {flipped, ""},

@@ -20,7 +20,16 @@ inline std::string broken_promise(const SceneData& scene) {
     if (!all(mesh.normals, [](const V3f& v) { return std::abs(v.length() - 1) <= 1e-5F; })) {
       return "unit normals";
     }
-    if (!one_each(mesh.normals) || !all(mesh.uvs, one_each)) return "attributes of every vertex";
+    if (!one_each(mesh.normals) || !all(mesh.uvs, one_each) || !one_each(mesh.tangents) ||
+        !one_each(mesh.colors)) {
+      return "attributes of every vertex";
+    }
+    const auto in_unit = [](float x) { return x >= 0 && x <= 1; };
+    if (!all(mesh.colors, [&](const V4f& c) {
+          return in_unit(c.x) && in_unit(c.y) && in_unit(c.z) && in_unit(c.w);
+        })) {
+      return "colours from 0 to 1";
+    }
     for (const auto& t : mesh.triangles) {
       if (!all(t, [n](auto i) { return i < n; })) return "indices of vertices";
     }
@@ -28,13 +37,15 @@ inline std::string broken_promise(const SceneData& scene) {
   }
   for (const Material& m : scene.materials) {
     bool there = true;
-    m.for_each_scattering_texture([&](const TextureRef& t) {
+    const auto is_there = [&](const TextureRef& t) {
       there = there && static_cast<std::size_t>(t.texture) < scene.textures.size();
-    });
+    };
+    m.for_each_scattering_texture(is_there);
+    if (m.normal_texture.used()) is_there(m.normal_texture);
     if (!there) return "textures that are there";
   }
   for (const CameraData& c : scene.cameras) {
-    if (!(c.yfov > 0 && c.yfov < 3.1416)) return "a field of view";
+    if (!(c.yfov > 0 && c.yfov < 3.1416) || !(c.height > 0)) return "a field of view";
   }
   return {};
 }

@@ -228,7 +228,7 @@ TEST(Images, OneThatIsNotUsedMayBeOfAnyKind) {
     GlbBuilder b;
     const auto texture = b.add_texture(test::encode8(1, 1, 3, {255, 0, 0}));
     b.json["images"].push_back(image);
-    b.json["textures"][texture]["extensions"]["EXT_texture_webp"]["source"] = 1;
+    b.json["textures"][texture]["extensions"]["KHR_texture_basisu"]["source"] = 1;
     const auto material =
         b.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
     b.add_node({{"mesh", b.add_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, static_cast<int>(material))}});
@@ -238,7 +238,7 @@ TEST(Images, OneThatIsNotUsedMayBeOfAnyKind) {
       load(b);
       ADD_FAILURE() << image;
     } catch (const SceneError& e) {
-      EXPECT_NE(std::string(e.what()).find("only what extension EXT_texture_webp gives"),
+      EXPECT_NE(std::string(e.what()).find("only what extension KHR_texture_basisu gives"),
                 std::string::npos)
           << e.what();
     }

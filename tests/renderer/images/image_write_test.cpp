@@ -110,7 +110,7 @@ TEST(PngWrite, CodesComeBackAndEqualPicturesAreEqualFiles) {
   for (const char* varies : {"tIME", "DateTime", "OpenImageIO"}) {
     EXPECT_EQ(png.find(varies), std::string::npos) << varies;
   }
-  const Rgba8Image back = decode_png_or_jpeg(Bytes(png.begin(), png.end()), "back");
+  const Rgba8Image back = decode_texture(Bytes(png.begin(), png.end()), "back");
   ASSERT_EQ(back.rgba.size(), 40U * 30 * 4);
   for (std::size_t i = 0; i < rgb.size(); ++i) ASSERT_EQ(back.rgba[i / 3 * 4 + i % 3], rgb[i]) << i;
 }

@@ -13,12 +13,12 @@ using test::expect_contains;
 using test::make_png;
 
 Bytes texels(const Bytes& file) {
-  const auto rgba = decode_png_or_jpeg(file, "test").rgba;
+  const auto rgba = decode_texture(file, "test").rgba;
   return {rgba.begin(), rgba.end()};
 }
 
 std::string refusal(const Bytes& file) {
-  return test::refusal_of([&] { decode_png_or_jpeg(file, "wood"); });
+  return test::refusal_of([&] { decode_texture(file, "wood"); });
 }
 
 Bytes cut(const Bytes& bytes, std::size_t length) {
@@ -79,7 +79,7 @@ TEST(TextureDecode, Interlaced) {
 
 TEST(TextureDecode, JpegsOfOneAndThreeChannels) {
   for (const char* name : {"flat.jpg", "grey.jpg", "rgb.jpg", "rgb_large.jpg"}) {
-    const Rgba8Image image = decode_png_or_jpeg(test::jpeg_seed(name), name);
+    const Rgba8Image image = decode_texture(test::jpeg_seed(name), name);
     ASSERT_EQ(image.rgba.size(), 4U * static_cast<unsigned>(image.width * image.height)) << name;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) ASSERT_EQ(image.rgba[i], 255);
   }
@@ -91,7 +91,7 @@ TEST(TextureDecode, JpegsOfOneAndThreeChannels) {
 TEST(TextureDecode, OtherFormatsAreRefusedUnseen) {
   const std::vector<std::string> files{"GIF89a",
                                        "8BPS",
-                                       std::string("RIFF\x1a\0\0\0WEBPVP8 ", 16),
+                                       std::string("RIFF\x1a\0\0\0WAVEfmt ", 16),
                                        "DDS |",
                                        std::string("\0\0\0\x18"
                                                    "ftypmp42",
@@ -102,7 +102,8 @@ TEST(TextureDecode, OtherFormatsAreRefusedUnseen) {
                                        "#?RADIANCE\n",
                                        ""};
   for (const std::string& file : files) {
-    expect_contains(refusal(Bytes(file.begin(), file.end())), "wood: neither a PNG nor a JPEG");
+    expect_contains(refusal(Bytes(file.begin(), file.end())),
+                    "wood: neither a PNG nor a JPEG, WebP or TIFF");
   }
 }
 
@@ -179,6 +180,74 @@ TEST(TextureDecode, WhatMakesNoTexelsNeverReachesTheLibrary) {
   }
   more.insert(more.end(), jpeg.begin() + 2, jpeg.end());
   EXPECT_EQ(texels(more), texels(jpeg));
+}
+
+/// libwebp's: red, half transparent green, blue of alpha 64, (200, 100, 50); two rows of two.
+const Bytes lossless{0x52, 0x49, 0x46, 0x46, 0x3c, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50,
+                     0x56, 0x50, 0x38, 0x4c, 0x30, 0x00, 0x00, 0x00, 0x2f, 0x01, 0x40, 0x00,
+                     0x10, 0x1f, 0x20, 0x10, 0x48, 0x92, 0xdd, 0x1f, 0x61, 0x0d, 0x81, 0x00,
+                     0xc1, 0xff, 0x98, 0x2b, 0x02, 0x01, 0x82, 0x25, 0xff, 0x6f, 0x04, 0x02,
+                     0xc4, 0x1a, 0x65, 0xd2, 0x85, 0x99, 0x3b, 0x52, 0x05, 0x35, 0x6d, 0x1b,
+                     0xb0, 0xf8, 0x4d, 0x3a, 0x22, 0xfa, 0x1f, 0x1c};
+/// The same, lossy, with a canvas and a chunk of alpha.
+const Bytes lossy{
+    0x52, 0x49, 0x46, 0x46, 0x76, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50, 0x38, 0x58,
+    0x0a, 0x00, 0x00, 0x00, 0x10, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x01, 0x00, 0x00, 0x41, 0x4c,
+    0x50, 0x48, 0x05, 0x00, 0x00, 0x00, 0x00, 0xff, 0x80, 0x40, 0xff, 0x00, 0x56, 0x50, 0x38, 0x20,
+    0x4a, 0x00, 0x00, 0x00, 0x70, 0x02, 0x00, 0x9d, 0x01, 0x2a, 0x02, 0x00, 0x02, 0x00, 0x00, 0x00,
+    0x00, 0x25, 0xa0, 0x02, 0x74, 0xba, 0x01, 0xf8, 0x01, 0xfa, 0x00, 0x03, 0x32, 0x95, 0xdf, 0x00,
+    0x00, 0xfe, 0xfe, 0xc1, 0xff, 0xfd, 0x67, 0xff, 0xcc, 0x7f, 0x76, 0x43, 0xff, 0x92, 0x6f, 0xff,
+    0xd5, 0x27, 0x5a, 0xe9, 0x62, 0xb4, 0x2b, 0x7f, 0x63, 0xff, 0xf7, 0x0c, 0x00, 0x26, 0x37, 0x6f,
+    0xfe, 0xe1, 0x87, 0xff, 0xe6, 0x44, 0xef, 0x36, 0xd5, 0xdf, 0xfe, 0x62, 0x00, 0x00};
+
+TEST(TextureDecode, WebpWithAlphaThatIsNotMultipliedIn) {
+  EXPECT_EQ(texels(lossless),
+            (Bytes{255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 64, 200, 100, 50, 255}));
+  // As libwebp itself decodes it.
+  EXPECT_EQ(texels(lossy),
+            (Bytes{138, 55, 17, 255, 214, 131, 93, 128, 93, 10, 0, 64, 186, 103, 65, 255}));
+  EXPECT_EQ(texels_of_texture(lossless, "test"), 4U);
+  EXPECT_EQ(texels_of_texture(lossy, "test"), 4U);
+}
+
+/// Two texels of `channels` integers of `bits`, as make_tiff() puts four bytes into a float.
+Bytes integer_tiff(std::uint32_t channels, std::uint32_t bits, const std::vector<float>& four_bytes,
+                   const std::vector<test::TiffEntry>& more = {}) {
+  std::vector<test::TiffEntry> entries{{258, std::vector<std::uint32_t>(channels, bits)},
+                                       {339, std::vector<std::uint32_t>(channels, 1)}};
+  entries.insert(entries.end(), more.begin(), more.end());
+  return test::make_tiff(2, 1, static_cast<int>(channels), four_bytes, entries);
+}
+
+TEST(TextureDecode, TiffOfIntegers) {
+  const auto bytes = [](std::uint32_t b) { return std::bit_cast<float>(b); };
+  const std::vector<float> two{bytes(0x40030201), bytes(0x80060504)};
+  EXPECT_EQ(texels(integer_tiff(4, 8, two, {{338, {2}}})), (Bytes{1, 2, 3, 64, 4, 5, 6, 128}));
+  EXPECT_EQ(texels(integer_tiff(1, 16, {bytes(0x01010000 * 7 + 257 * 9)})),
+            (Bytes{9, 9, 9, 255, 7, 7, 7, 255}));
+  EXPECT_EQ(texels_of_texture(integer_tiff(4, 8, two), "test"), 2U);
+  expect_contains(refusal(integer_tiff(4, 8, two, {{338, {1}}})), "wood: has alpha that is mult");
+  expect_contains(refusal(integer_tiff(4, 8, two, {{274, {3}}})), "has orientation 3; allowed: 1");
+  expect_contains(refusal(test::make_tiff(1, 1, 1, {1.0F})),
+                  "has 32-bit floats; allowed: 8- and 16-bit unsigned integers");
+}
+
+TEST(TextureDecode, WebpThatIsCutOrAnAnimationIsRefused) {
+  for (std::size_t n = 12; n + 1 < lossy.size(); ++n) {
+    EXPECT_NE(refusal(cut(lossy, n)), "accepted") << n << " bytes";
+  }
+  for (std::size_t n = 12; n < lossless.size(); ++n) {
+    EXPECT_NE(refusal(cut(lossless, n)), "accepted") << n << " bytes";
+  }
+  Bytes changed = lossy;
+  changed[20] |= 2;
+  expect_contains(refusal(changed), "wood: is an animation; allowed: one image");
+  changed = lossy;
+  changed[24] = 7;
+  expect_contains(refusal(changed), "its frame is not as large as its canvas");
+  changed = lossless;
+  changed[20] = 0;
+  expect_contains(refusal(changed), "its frame has no signature");
 }
 
 }  // namespace

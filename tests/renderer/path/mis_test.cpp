@@ -109,7 +109,7 @@ class Meeting {
   /// t = 1.
   template <class Joined>
   void join_eye(std::size_t i, const Joined& joined) const {
-    const EyeEndpoint eye{camera_};
+    const EyeEndpoint eye{camera_, camera_.position()};
     for (int s = 1; s <= light_.length(i); ++s) {
       const EmitterPoint& e = light_.emitter(i);
       const V3f& x = s == 1 ? e.x : light_.vertex(i, s - 1).surface.x;

@@ -91,7 +91,7 @@ class Remake {
   double joined(const Light& light, int s) const {
     const int depth = path_.edges() - s;
     if (depth == 0) {
-      const EyeEndpoint eye{camera_};
+      const EyeEndpoint eye{camera_, camera_.position()};
       return lacuna::weight(eye, light, connect(eye, light), counts_);
     }
     const SurfaceEndpoint eye{eye_.vertex(0, depth), depth, Transport::radiance, guide_};
