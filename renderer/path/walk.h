@@ -171,14 +171,16 @@ class Walk {
 
   /// Absorption along the edge from `before` to `v`.
   void absorb(PathState& w, const Vertex& before, Vertex& v) const {
-    const bool infinite =
-        before.kind == Vertex::Kind::background || v.kind == Vertex::Kind::background;
+    // Emitters at infinity: their light comes from there. The eye of a parallel projection does
+    // not.
+    const bool from_infinity =
+        before.kind == Vertex::Kind::background && limits_.transport == Transport::importance;
+    const bool infinite = from_infinity || v.kind == Vertex::Kind::background;
     const auto medium = [&](const Vertex& at, const V3f& along) {
       return at.kind == Vertex::Kind::surface ? scene_.medium(at.surface, along) : nullptr;
     };
-    w.throughput *=
-        transmittance(medium(before, w.ray.d), medium(v, v.wp),
-                      infinite ? infinite_distance : (v.surface.x - before.surface.x).length());
+    w.throughput *= transmittance(medium(before, w.ray.d), medium(v, v.wp),
+                                  infinite ? infinite_distance : (v.surface.x - w.ray.o).length());
     v.throughput = w.throughput;
   }
 
