@@ -228,7 +228,7 @@ Rgb EmitterSet::varying_emission(const Source& source, const Selected& chosen, c
   if (source.mask != none) {
     const std::array<std::uint32_t, 5> event{static_cast<std::uint32_t>(chosen.at.x),
                                              static_cast<std::uint32_t>(chosen.at.x >> 32),
-                                             chosen.at.y, chosen.at.besides, chosen.entry};
+                                             chosen.at.y, chosen.at.u_select, chosen.entry};
     if (!decide_by_bits(masks_[source.mask].coverage(triangle, b), event)) return Rgb(0, 0, 0);
   }
   if (!source.textured && !source.colored) return source.emission;

@@ -1,5 +1,7 @@
 #include "renderer/gltf/gltf_features.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -167,9 +169,7 @@ const Feature* find_extension(std::string_view extension) {
 }
 
 std::string text_of(const Feature& f) {
-  std::string text(f.how);
-  if (!f.remedy.empty()) text += (text.empty() ? "" : "; ") + std::string(f.remedy);
-  return text;
+  return fmt::format("{}{}{}", f.how, f.how.empty() || f.remedy.empty() ? "" : "; ", f.remedy);
 }
 
 }  // namespace
@@ -178,7 +178,7 @@ std::span<const Feature> all_features() { return feature_rows; }
 
 std::string remedy_for(std::string_view extension) {
   const Feature* const f = find_extension(extension);
-  return f == nullptr || f->remedy.empty() ? "" : "; " + std::string(f->remedy);
+  return f == nullptr || f->remedy.empty() ? "" : fmt::format("; {}", f->remedy);
 }
 
 std::string supported_extensions() {
@@ -196,7 +196,7 @@ bool extension_supported(std::string_view name) {
 }
 
 std::string unsupported_extension(std::string_view name) {
-  return "extension " + std::string(name) + " is not supported and left out";
+  return fmt::format("extension {} is not supported and left out", name);
 }
 
 }  // namespace lacuna::gltf
@@ -231,10 +231,9 @@ std::vector<FeatureUse> features_of(const std::filesystem::path& file) {
 std::string feature_table() {
   std::string text = "| part of glTF | treatment | how |\n| --- | --- | --- |\n";
   for (const gltf::Feature& f : gltf::all_features()) {
-    const bool is_extension = f.used_in == nullptr;
-    const std::string name = is_extension ? "`" + std::string(f.name) + "`" : std::string(f.name);
-    text += "| " + name + " | " + std::string(gltf::name_of(f.treatment)) + " | " +
-            gltf::text_of(f) + " |\n";
+    const std::string_view quote = f.used_in == nullptr ? "`" : "";
+    text += fmt::format("| {0}{1}{0} | {2} | {3} |\n", quote, f.name, gltf::name_of(f.treatment),
+                        gltf::text_of(f));
   }
   return text;
 }
