@@ -10,6 +10,7 @@
 #include <array>
 #include <deque>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "renderer/geometry/scene_data.h"
