@@ -32,7 +32,15 @@ Bsdf::Choice Bsdf::choice(const ShadingFrame& from) const {
     return c;
   }
   weigh_base(from, c);
-  if (lobes_.extended) add_covers(from, c);
+  if (!lobes_.extended) {
+    const double sum = c.diffuse + c.facets + c.clear;
+    if (!(sum > 0)) return {};
+    c.diffuse /= sum;
+    c.facets /= sum;
+    c.clear /= sum;
+    return c;
+  }
+  add_covers(from, c);
   const double sum = c.diffuse + c.through + c.facets + c.clear + c.coat + c.sheen;
   if (!(sum > 0)) return {};
   for (double* p : {&c.diffuse, &c.through, &c.facets, &c.clear, &c.coat, &c.sheen}) *p /= sum;
