@@ -30,7 +30,7 @@ class SharedLight : public testing::Test {
 
   /// Path `i` gathers `value` by next event estimation at its second vertex.
   void gather(std::size_t i, float value) {
-    reuse_.look(i, batch_.vertex(i, 2).wp);
+    reuse_.set_next_event_direction(i, batch_.vertex(i, 2).wp);
     reuse_.add(i, 2, Rgb(value));
   }
   Rgb finish() {
