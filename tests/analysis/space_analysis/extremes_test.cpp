@@ -123,7 +123,10 @@ TEST(Extremes, NoTriangleNoGrid) {
 }
 
 TEST(Extremes, APointIsOneVoxelThatIsFull) {
-  Chain point({{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}}, 16, everywhere);
+  TriangleSoup soup;
+  soup.positions.assign(3, Imath::V3f(1, 2, 3));
+  soup.triangles = {{0, 1, 2}};
+  Chain point(soup, 16, everywhere);
   EXPECT_EQ(point->voxels().scene.size(), V3i(1));
   expect_whole(*point);
   EXPECT_EQ(point->skeleton().nodes(), 0u);

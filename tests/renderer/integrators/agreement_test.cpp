@@ -31,7 +31,6 @@ const std::vector<Agreement> agreements{
     {{"cornell"}, 5, 200, true, 0.015},
     {{"glass"}, 5, 120, false, 0.015},
     {{"mirror"}, 4, 400, false, 0.025},
-    {{"many_lights"}, 4, 400, true, 0.07},
     {{"point"}, 3, 150, true, 0.015},
     {{"spot"}, 3, 150},
     {{"sides"}, 4, 200},
@@ -41,8 +40,12 @@ const std::vector<Agreement> agreements{
     {{"coated"}, 4, 120, false},
 };
 const std::vector<Agreement> more_agreements{
-    {{"furnace_sphere"}, 3, 200},       {{"directional"}, 3, 150, true, 0.015}, {{"area"}, 4, 200},
-    {{"leaning"}, 5, 240, true, 0.035}, {{"bends"}, 7, 120, true, 0.07},
+    {{"furnace_sphere"}, 3, 200},
+    {{"directional"}, 3, 150, true, 0.015},
+    {{"area"}, 4, 200},
+    {{"leaning"}, 5, 240, true, 0.035},
+    {{"bends"}, 7, 120, true, 0.07},
+    {{"many_lights"}, 4, 400, true, 0.07},
 };
 
 constexpr int columns = 20, rows = 12;

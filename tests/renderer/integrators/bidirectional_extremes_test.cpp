@@ -80,7 +80,7 @@ TEST(BidirectionalExtremes, OneLightPath) {
   expect_same_picture(render(lamp_room(), small(test::light_tracing(4, 1), 8000)), expected, 0.07);
 }
 
-TEST(BidirectionalExtremes, MoreLightPathsThanPixels) {
+TEST(LongBidirectionalExtremes, MoreLightPathsThanPixels) {
   const Rendering expected = by_path(lamp_room(), 4, 1000);
   for (const Method& m : test::connections(4, 1000)) {
     SCOPED_TRACE(m);
@@ -116,7 +116,7 @@ SceneData two_halves() {
 
 // One pixel has the whole view. Which half its eye path goes to tells nothing of the lamp that its
 // light path starts at.
-TEST(BidirectionalExtremes, PathsThatMeetAreIndependent) {
+TEST(LongBidirectionalExtremes, PathsThatMeetAreIndependent) {
   RenderSettings s = small(test::path_tracing(3), 300000);
   s.width = s.height = 1;
   const Rendering expected = render(two_halves(), s);
@@ -138,7 +138,7 @@ TEST(BidirectionalExtremes, NoLightAtAll) {
 }
 
 // All light paths stay outside.
-TEST(BidirectionalExtremes, LightThatNeverReachesTheRoom) {
+TEST(LongBidirectionalExtremes, LightThatNeverReachesTheRoom) {
   const auto outside = [](bool lit) {
     SceneParts p = closed_room(grey);
     p.box({4, -1, -1}, {6, 1, 1}, false, p.material(grey));
@@ -154,7 +154,7 @@ TEST(BidirectionalExtremes, LightThatNeverReachesTheRoom) {
   }
 }
 
-TEST(BidirectionalExtremes, BrightAndDimTogether) {
+TEST(LongBidirectionalExtremes, BrightAndDimTogether) {
   const auto both = [](float bright, float dim, bool apart) {
     SceneParts p = closed_room(grey);
     p.box({4, -1, -1}, {6, 1, 1}, false, p.material(grey));
@@ -194,7 +194,7 @@ TEST(BidirectionalExtremes, EverythingSpecular) {
 }
 
 // What a mask takes away is not there, and does not shine.
-TEST(BidirectionalExtremes, MaskedEmitters) {
+TEST(LongBidirectionalExtremes, MaskedEmitters) {
   const auto hidden = [] {
     SceneParts p = closed_room(grey);
     Material lamp = test::lamp(Rgb(5, 5, 5));

@@ -87,7 +87,7 @@ Rendering rendering(const IntegratorSettings& integrator, int iterations) {
                                    .iterations = iterations});
 }
 
-TEST(Caustics, ThroughGlassAreExact) {
+TEST(LongCaustics, ThroughGlassAreExact) {
   const SceneData scene = load_gltf(test::own_scene("slab.glb"));
   const std::vector<double> expected =
       block_means(exact_picture(Camera(scene.cameras.front(), film_side, film_side)));

@@ -107,7 +107,7 @@ RenderSettings square_picture(const IntegratorSettings& integrator, int side, in
 }
 
 // One chain for a picture, more chains than pixels, and a picture of one pixel.
-TEST(Metropolis, AnyNumberOfChains) {
+TEST(LongMetropolis, AnyNumberOfChains) {
   const PathScene scene{"point"};
   for (const auto& [number, side, iterations] :
        {std::tuple{1, 8, 400}, std::tuple{100000, 8, 20}, std::tuple{20, 1, 1000}}) {

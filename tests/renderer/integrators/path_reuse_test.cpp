@@ -101,7 +101,7 @@ TEST(PathReuse, AndRouletteHaveThePictureOfOthers) {
 }
 
 // Guided paths share what they gather, with the densities of their guide.
-TEST(PathReuse, AndGuidesHaveThePictureOfOthers) {
+TEST(LongPathReuse, AndGuidesHaveThePictureOfOthers) {
   RenderSettings s{
       .integrator = test::path_tracing(5), .width = 20, .height = 12, .iterations = 2000};
   const Rendering expected = test::render("ajar.glb", s);

@@ -114,7 +114,7 @@ TEST(Radius, BelowTheGrainOfFloatsLeavesThePictureAlone) {
 }
 
 // As large as a radius may be: far too blurred, but finite, positive and not slow.
-TEST(Radius, BeyondTheSceneIsABlur) {
+TEST(LongRadius, BeyondTheSceneIsABlur) {
   for (const test::Method& method : test::merging(4)) {
     SCOPED_TRACE(method);
     for (const double radius : {1e3, 1e15}) {

@@ -101,7 +101,7 @@ std::vector<double> squared_errors(const Seeds& seeds) {
   return result;
 }
 
-TEST(Sobol, ClaimsTheErrorThatItHas) {
+TEST(LongSobol, ClaimsTheErrorThatItHas) {
   constexpr int seeds = 90, iterations = 32;
   for (const PathScene& scene : {PathScene{"cornell"}, PathScene{"open", true}}) {
     for (const IntegratorSettings& method :

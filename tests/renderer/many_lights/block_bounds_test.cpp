@@ -24,7 +24,7 @@ TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
     for (std::size_t i = 0; i < x.size(); ++i) {
       x[i] = centre + 0.5F * direction(rng);
       g[i] = (facing + 0.3F * direction(rng)).normalized();
-      bounds.add({x[i], g[i]});
+      bounds.add(V3f{x[i], g[i]});
     }
     const V3f p = direction(rng);
     const V3f normal = direction(rng);
@@ -53,8 +53,8 @@ TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
 
 TEST(MortonOrder, KeepsEachAxisInOrder) {
   Bounds box;
-  box.add({-1, -1, -1});
-  box.add({1, 1, 3});
+  box.add(V3f{-1, -1, -1});
+  box.add(V3f{1, 1, 3});
   const MortonOrder order(box);
   EXPECT_EQ(order({-1, -1, -1}), 0U);
   EXPECT_EQ(order({-1, -1, 3}), 0x4924924924924924U);
@@ -62,7 +62,7 @@ TEST(MortonOrder, KeepsEachAxisInOrder) {
     EXPECT_GT(order(V3f(0.3F, 0.2F, 0.1F) + step), order({0.3F, 0.2F, 0.1F}));
   }
   Bounds point;
-  point.add({1, 2, 3});
+  point.add(V3f{1, 2, 3});
   EXPECT_EQ(MortonOrder(point)({1, 2, 3}), 0U);
 }
 
