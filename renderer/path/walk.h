@@ -169,8 +169,9 @@ class Walk {
     v.prev_connectible = before.connectible();
   }
 
-  /// Absorption along the edge from `before` to `v`.
-  void absorb(PathState& w, const Vertex& before, Vertex& v) const {
+  /// Absorption along the edge from `before` to `v`. Not inline: on_hit() is, and few scenes
+  /// absorb.
+  [[gnu::noinline, gnu::cold]] void absorb(PathState& w, const Vertex& before, Vertex& v) const {
     // Emitters at infinity: their light comes from there. The eye of a parallel projection does
     // not.
     const bool from_infinity =
