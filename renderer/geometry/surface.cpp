@@ -12,8 +12,7 @@ bool uses_textures(const Material& m) {
   return any;
 }
 
-/// Moves `s`, in the coordinates of a prototype but for its point, to the scene. Its normal is bent
-/// there: across it, normals transform otherwise than directions of the surface.
+/// Moves `s`, in the coordinates of a prototype but for its point, to the scene.
 void place(Surface& s, const SceneData& scene, const Hit& hit, const TriangleShape& placed) {
   const Instance& instance = scene.instances[hit.instance];
   const bool smooth = s.ns != s.ng;
@@ -22,19 +21,19 @@ void place(Surface& s, const SceneData& scene, const Hit& hit, const TriangleSha
   s.ns = smooth && n.length2() > 0 ? n.normalized() : s.ng;
   s.offset = ray_offset(s.x, s.ng, placed.plane_error);
   s.instance = hit.instance;
-  if (scene.materials[s.material].normal_texture.used()) {
-    s.ns = bent_normal(scene, s, {hit.u, hit.v});
-  }
 }
 
 /// The least cosine between a bent normal and the front of the triangle: what points behind it
 /// would scatter no light.
 constexpr float least_cosine = 0.01F;
 
-}  // namespace
-
+/// The shading normal `s.ns`, in scene coordinates, bent by the normal map of the material at
+/// barycentric `at`; `s.ns` without a map, if its texture is not decoded, or if the triangle has no
+/// texture coordinates. Of an instance it is bent in the scene, because normals and directions of
+/// the surface transform differently.
 V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at) {
   const Material& m = scene.materials[s.material];
+  if (!m.normal_texture.used()) return s.ns;
   const Texture& texture = *scene.textures[static_cast<std::size_t>(m.normal_texture.texture)];
   if (!texture.decoded()) return s.ns;
   const Mesh& mesh = scene.meshes[s.mesh];
@@ -56,18 +55,18 @@ V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at) {
   return bent;
 }
 
-Surface Surface::of_instance(const SceneData& scene, const TriangleTable& table, const Ray& ray,
-                             const Hit& hit) {
-  const TriangleShape placed = placed_triangle(scene, table, hit);
-  Surface s(scene, table, hit, placed.at(ray, hit.u, hit.v));
-  place(s, scene, hit, placed);
-  return s;
+}  // namespace
+
+Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, const Ray& ray,
+                        const Hit& hit) {
+  return of_any(scene, table, hit, placed_triangle(scene, table, hit).at(ray, hit.u, hit.v));
 }
 
-Surface Surface::of_instance(const SceneData& scene, const TriangleTable& table, const Hit& hit,
-                             const V3f& x) {
+Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, const Hit& hit,
+                        const V3f& x) {
   Surface s(scene, table, hit, x);
-  place(s, scene, hit, placed_triangle(scene, table, hit));
+  if (hit.instance != no_instance) place(s, scene, hit, placed_triangle(scene, table, hit));
+  s.ns = bent_normal(scene, s, {hit.u, hit.v});
   return s;
 }
 
@@ -85,7 +84,6 @@ TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
   smooth = !mesh.normals.empty();
   textured = uses_textures(m) && !(mesh.uvs[0].empty() && mesh.uvs[1].empty());
   two_uv_sets = !mesh.uvs[1].empty();
-  bent = textured && m.normal_texture.used();
   emits = m.emits();
   emits_behind = m.emits_behind();
   material = mesh.material;

@@ -17,7 +17,6 @@ struct alignas(64) TriangleRecord : TriangleShape {
   bool two_uv_sets = false;
   bool emits : 1 = false;
   bool emits_behind : 1 = false;
-  bool bent : 1 = false;  ///< has a normal map
   std::uint32_t material = 0;
 
   TriangleRecord(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle);
@@ -68,12 +67,6 @@ class TriangleTable {
 /// The triangle of a hit, in scene coordinates.
 TriangleShape placed_triangle(const SceneData& scene, const TriangleTable& table, const Hit& hit);
 
-struct Surface;
-/// The shading normal `s.ns`, in scene coordinates, bent by the normal map of the material at
-/// barycentric `at`; `s.ns` if the texture is not decoded or the triangle has no texture
-/// coordinates.
-V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at);
-
 /// The geometry of a hit. `ng` is unit and points to the front of the triangle.
 struct Surface {
   V3f x{0, 0, 0};
@@ -88,12 +81,12 @@ struct Surface {
   bool emits = false, emits_behind = false;
 
   Surface() = default;
-  /// The hit of `ray`, or the hit at point `x` computed before, of a triangle of an instance.
-  static Surface of_instance(const SceneData& scene, const TriangleTable& table, const Ray& ray,
-                             const Hit& hit);
-  static Surface of_instance(const SceneData& scene, const TriangleTable& table, const Hit& hit,
-                             const V3f& x);
-  // Inline: every hit constructs a Surface in place. For instances use of_instance().
+  /// The hit of `ray`, or the hit at point `x` computed before, of any triangle.
+  static Surface of_any(const SceneData& scene, const TriangleTable& table, const Ray& ray,
+                        const Hit& hit);
+  static Surface of_any(const SceneData& scene, const TriangleTable& table, const Hit& hit,
+                        const V3f& x);
+  // Inline: every hit constructs a Surface in place. For instances and normal maps use of_any().
   /// The hit of `ray`.
   Surface(const SceneData& scene, const TriangleTable& table, const Ray& ray, const Hit& hit)
       : Surface(scene, table, hit, table.at(hit.mesh, hit.triangle).at(ray, hit.u, hit.v)) {}
@@ -120,8 +113,6 @@ struct Surface {
       // Opposite normals can cancel: then keep ng.
       if (length2 > 0.0F) ns = n / std::sqrt(length2);
     }
-    if (r.bent && hit.instance == no_instance) [[unlikely]]
-      ns = bent_normal(scene, *this, {hit.u, hit.v});
   }
 };
 

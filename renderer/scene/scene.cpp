@@ -39,6 +39,9 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool))) {
   has_media_ = std::ranges::any_of(data_->materials,
                                    [](const Material& m) { return m.medium() != nullptr; });
+  plain_ = data_->instances.empty() &&
+           std::ranges::none_of(data_->materials,
+                                [](const Material& m) { return m.normal_texture.used(); });
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     find_contacts(pool);
@@ -70,6 +73,11 @@ Rgb Scene::vertex_color(const Surface& s) const {
   const Mesh& mesh = data_->meshes[s.mesh];
   const V4f c = mesh.mix(mesh.colors, s.triangle, barycentric(s));
   return {c.x, c.y, c.z};
+}
+
+Rgb Scene::varying_emission(const Surface& s) const {
+  const Rgb emitted = emission(material(s), data_->textures, s.uv);
+  return material(s).emits_vertex_colors() ? emitted * vertex_color(s) : emitted;
 }
 
 void Scene::make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) const {

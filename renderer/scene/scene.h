@@ -40,14 +40,14 @@ class Scene {
   const SceneData& data() const { return *data_; }
   /// The surface at a hit of rays().
   Surface surface(const Ray& ray, const Hit& hit) const {
-    if (hit.instance != no_instance) [[unlikely]]
-      return Surface::of_instance(*data_, triangles_, ray, hit);
+    if (!plain_) [[unlikely]]
+      return Surface::of_any(*data_, triangles_, ray, hit);
     return {*data_, triangles_, ray, hit};
   }
   /// The same if the point `x` has been computed.
   Surface surface(const Hit& hit, const V3f& x) const {
-    if (hit.instance != no_instance) [[unlikely]]
-      return Surface::of_instance(*data_, triangles_, hit, x);
+    if (!plain_) [[unlikely]]
+      return Surface::of_any(*data_, triangles_, hit, x);
     return {*data_, triangles_, hit, x};
   }
   /// The geometry of a triangle of a placed mesh.
@@ -70,8 +70,9 @@ class Scene {
   /// Radiance that leaves `s` in unit direction `wo`.
   Rgb emitted(const Surface& s, const V3f& wo) const {
     if (!s.emits || (!s.emits_behind && dot(wo, s.ng) <= 0)) return {0, 0, 0};
-    const Rgb uniform = emission(material(s), data_->textures, s.uv);
-    return material(s).emits_vertex_colors() ? uniform * vertex_color(s) : uniform;
+    const Material& m = material(s);
+    const bool varies = m.emission_texture.used() || m.emits_vertex_colors();
+    return varies ? varying_emission(s) : m.emission;
   }
   /// Constructs the BSDF at `s` in `place`, because a move would be slow. Requires
   /// SceneNeeds::materials.
@@ -108,7 +109,8 @@ class Scene {
  private:
   /// COLOR_0; the material has vertex colours.
   Rgb vertex_color(const Surface& s) const;
-  // Not inline: make_bsdf() is called at every hit, and most materials are uniform.
+  // Not inline: emitted() and make_bsdf() are called at every hit, and most materials are uniform.
+  Rgb varying_emission(const Surface& s) const;
   void make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) const;
   float blended_coverage(const Surface& s) const;
   void find_contacts(const ThreadPool& pool);
@@ -119,6 +121,7 @@ class Scene {
   std::unique_ptr<SceneData> data_;  // on the heap: rays and emitters point into it
   Bounds bounds_;
   int textures_decoded_ = 0;
+  bool plain_ = true;  // neither instances nor normal maps
   bool has_media_ = false;
   TriangleTable triangles_;
   std::vector<std::optional<Lobes>>

@@ -135,7 +135,7 @@ TEST_P(Features, AreSeenAlikeByMethodsThatMerge) {
                                  {"sppm_photons_only", photons_only}}) {
     SCOPED_TRACE(method.name);
     const auto settings = test::fixed_radius(method.settings, 0.02, RadiusUnit::scene);
-    const auto m = mean_over_iterations(render(load(), picture(settings, 60)));
+    const auto m = mean_over_iterations(render(load(), picture(settings, 200)));
     EXPECT_LT(m.standard_error(), 0.03 * expected) << "the test has no power";
     EXPECT_NEAR(m.mean(), expected, expected / 30 + 4 * m.standard_error());
   }
@@ -162,7 +162,7 @@ TEST(Blend, LetsThroughTheProductOfAllLayers) {
   }
   p.quad({-9, -9, -3}, {18, 0, 0}, {0, 18, 0}, p.material(test::lamp(Rgb(1, 1, 1))));
   p.eye({0, 0, 1}, {0, 0, 0}, 0.8);
-  const Rendering r = render(std::move(p.data), picture(test::path_tracing(1), 400));
+  const Rendering r = render(std::move(p.data), picture(test::path_tracing(1), 1000));
   const auto m = mean_over_iterations(r);
   EXPECT_LT(m.standard_error(), 0.01 * passes);
   EXPECT_NEAR(m.mean(), passes, 5 * m.standard_error());
