@@ -47,6 +47,21 @@ struct Lobes {
       kind = is_black(diffuse) ? Kind::black : Kind::lambert;
     }
   }
+  /// Every hit copies the lobes of its material: what most materials do not use is left out.
+  Lobes(const Lobes& o)
+      : diffuse(o.diffuse),
+        kind(o.kind),
+        extended(o.extended),
+        layer(o.layer),
+        interface(o.interface),
+        medium(o.medium) {
+    if (!extended) return;
+    diffuse_through = o.diffuse_through;
+    covers = o.covers;
+    alpha_along = o.alpha_along;
+    direction = o.direction;
+  }
+  Lobes& operator=(const Lobes&) = default;
 
   bool has_diffuse() const { return !is_black(diffuse); }
   /// Whether other lobes than the facets must be sampled, too.
@@ -57,15 +72,15 @@ struct Lobes {
 
   Rgb diffuse;  ///< share of Lambert times base colour
   Kind kind = Kind::layered;
-  bool extended = false;  ///< something below `interface` is used, or facets of two widths
+  bool extended = false;  ///< something below `medium` is used
   Layer layer;            ///< used if facets_compete()
   Interface interface;
+  const Medium* medium = nullptr;  ///< behind the surface
 
   Rgb diffuse_through{0, 0, 0};  ///< Lambert's lobe on the other side: share times colour
   Covers covers;
   float alpha_along = 0;  ///< as in SurfaceParams
   V2f direction{1, 0};
-  const Medium* medium = nullptr;  ///< behind the surface
 
  private:
   static bool has_extensions(const SurfaceParams& p) {

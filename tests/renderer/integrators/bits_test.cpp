@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
+#include <span>
 
 #include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/integrators/methods.h"
@@ -58,16 +60,16 @@ TEST_P(BidirectionalBits, DoNotDependOnThreads) {
   }
 }
 
+struct Lit {
+  const char* name;
+  bool sky;
+};
+
 // Scaling by a power of two moves exponents only.
-TEST_P(BidirectionalBits, StayUnderScaleByPowersOfTwo) {
-  struct Lit {
-    const char* name;
-    bool sky;
-  };
-  for (const Lit& lit : {Lit{"cornell.glb", false}, Lit{"many_lights.glb", false},
-                         Lit{"atrium.glb", false}, Lit{"open.glb", true}}) {
+void expect_same_under_scale(const test::Method& method, std::span<const Lit> scenes) {
+  for (const Lit& lit : scenes) {
     test::RenderSettings s{
-        .integrator = GetParam().settings, .width = 24, .height = 20, .iterations = 3};
+        .integrator = method.settings, .width = 24, .height = 20, .iterations = 3};
     if (lit.sky) s.environment = EnvironmentImage{own_scene("sky.hdr"), 1, 0.7F};
     const std::vector<double> expected =
         test::render(test::transformed(lit.name, 1, V3d(0)), s).film.mean();
@@ -80,6 +82,17 @@ TEST_P(BidirectionalBits, StayUnderScaleByPowersOfTwo) {
       EXPECT_EQ(r.counters.rejected, 0U);
     }
   }
+}
+
+TEST_P(BidirectionalBits, StayUnderScaleByPowersOfTwo) {
+  expect_same_under_scale(GetParam(), std::array{Lit{"cornell.glb", false}, Lit{"open.glb", true}});
+}
+
+class LongBidirectionalBits : public testing::TestWithParam<test::Method> {};
+
+TEST_P(LongBidirectionalBits, StayUnderScaleByPowersOfTwo) {
+  expect_same_under_scale(GetParam(),
+                          std::array{Lit{"many_lights.glb", false}, Lit{"atrium.glb", false}});
 }
 
 test::RenderSettings paused_picture(const test::Method& method) {
@@ -138,6 +151,8 @@ TEST_P(BidirectionalBits, AreTheSameAfterAnIterationThatWasStopped) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BidirectionalBits, testing::ValuesIn(bidirectional(4)),
+                         [](const auto& m) { return m.param.name; });
+INSTANTIATE_TEST_SUITE_P(Long, LongBidirectionalBits, testing::ValuesIn(bidirectional(4)),
                          [](const auto& m) { return m.param.name; });
 
 TEST(NodeCounts, OfAnotherSkeletonAreRefused) {
