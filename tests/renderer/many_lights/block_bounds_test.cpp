@@ -24,7 +24,7 @@ TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
     for (std::size_t i = 0; i < x.size(); ++i) {
       x[i] = centre + 0.5F * direction(rng);
       g[i] = (facing + 0.3F * direction(rng)).normalized();
-      bounds.add(V3f{x[i], g[i]});
+      bounds.add({x[i], g[i]});
     }
     const V3f p = direction(rng);
     const V3f normal = direction(rng);
