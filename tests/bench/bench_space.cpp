@@ -60,8 +60,10 @@ TriangleSoup small_triangles(int count) {
 }
 
 TriangleSoup tilted_wall() {
-  return {{{0, 0, 0.1F}, {1, 0, 0.3F}, {1, 1, 0.8F}, {0, 1, 0.6F}, {0, 0, 0}, {1, 1, 1}},
-          {{0, 1, 2}, {0, 2, 3}, {4, 4, 4}, {5, 5, 5}}};
+  TriangleSoup soup;
+  soup.positions = {{0, 0, 0.1F}, {1, 0, 0.3F}, {1, 1, 0.8F}, {0, 1, 0.6F}, {0, 0, 0}, {1, 1, 1}};
+  soup.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 4, 4}, {5, 5, 5}};
+  return soup;
 }
 
 /// Registers `body(pool)` for one and for two threads; time is wall time, CPU that of all threads.
