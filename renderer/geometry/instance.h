@@ -27,8 +27,8 @@ struct Instance {
   /// A bound on |A| |A^-1| for the matrix A of the axes, in the norm of the largest row sum: how
   /// much the way to the prototype's coordinates and back enlarges a rounding error.
   float condition = 1;
-  /// A bound, in scene units, on how far Embree moves a ray when it transforms it to the prototype's
-  /// coordinates in single precision; see set_reach().
+  /// A bound, in scene units, on how far Embree moves a ray when it transforms it to the
+  /// prototype's coordinates in single precision; see set_reach().
   float ray_error = 0;
 
   Instance() = default;

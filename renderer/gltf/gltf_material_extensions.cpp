@@ -103,16 +103,16 @@ bool noted_as_solid(const GltfObject& material) {
 void read_material_extensions(const GltfObject& material, TextureTable& textures,
                               MaterialExtensions& out) {
   const auto read = [&](const char* name, auto reader, auto& into) {
-    const auto extension = material.extension(std::string("KHR_materials_") + name);
+    const auto extension = material.extension(name);
     if (extension) reader(Reader{*extension, textures}, into);
   };
-  read("volume", read_volume, out.volume);
+  read("KHR_materials_volume", read_volume, out.volume);
   if (noted_as_solid(material)) out.volume.solid = true;
-  read("diffuse_transmission", read_diffuse_transmission, out.diffuse_transmission);
-  read("clearcoat", read_coat, out.coat);
-  read("sheen", read_sheen, out.sheen);
-  read("anisotropy", read_anisotropy, out.anisotropy);
-  read("iridescence", read_iridescence, out.iridescence);
+  read("KHR_materials_diffuse_transmission", read_diffuse_transmission, out.diffuse_transmission);
+  read("KHR_materials_clearcoat", read_coat, out.coat);
+  read("KHR_materials_sheen", read_sheen, out.sheen);
+  read("KHR_materials_anisotropy", read_anisotropy, out.anisotropy);
+  read("KHR_materials_iridescence", read_iridescence, out.iridescence);
 }
 
 }  // namespace lacuna::gltf

@@ -244,7 +244,8 @@ std::size_t differing_voxels(const Voxels& a, const Voxels& b) {
   Imath::V3i v;
   for (v.z = 0; v.z < a.scene.size().z; ++v.z)
     for (v.y = 0; v.y < a.scene.size().y; ++v.y)
-      for (v.x = 0; v.x < a.scene.size().x; ++v.x) count += a.scene.get(v) != b.scene.get(v) ? 1 : 0;
+      for (v.x = 0; v.x < a.scene.size().x; ++v.x)
+        count += a.scene.get(v) != b.scene.get(v) ? 1 : 0;
   return count;
 }
 

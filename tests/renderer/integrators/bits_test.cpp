@@ -60,14 +60,14 @@ TEST_P(BidirectionalBits, DoNotDependOnThreads) {
   }
 }
 
-struct Lit {
+struct ScaledScene {
   const char* name;
   bool sky;
 };
 
 // Scaling by a power of two moves exponents only.
-void expect_same_under_scale(const test::Method& method, std::span<const Lit> scenes) {
-  for (const Lit& lit : scenes) {
+void expect_same_under_scale(const test::Method& method, std::span<const ScaledScene> scenes) {
+  for (const ScaledScene& lit : scenes) {
     test::RenderSettings s{
         .integrator = method.settings, .width = 24, .height = 20, .iterations = 3};
     if (lit.sky) s.environment = EnvironmentImage{own_scene("sky.hdr"), 1, 0.7F};
@@ -85,14 +85,15 @@ void expect_same_under_scale(const test::Method& method, std::span<const Lit> sc
 }
 
 TEST_P(BidirectionalBits, StayUnderScaleByPowersOfTwo) {
-  expect_same_under_scale(GetParam(), std::array{Lit{"cornell.glb", false}, Lit{"open.glb", true}});
+  expect_same_under_scale(
+      GetParam(), std::array{ScaledScene{"cornell.glb", false}, ScaledScene{"open.glb", true}});
 }
 
 class LongBidirectionalBits : public testing::TestWithParam<test::Method> {};
 
 TEST_P(LongBidirectionalBits, StayUnderScaleByPowersOfTwo) {
-  expect_same_under_scale(GetParam(),
-                          std::array{Lit{"many_lights.glb", false}, Lit{"atrium.glb", false}});
+  expect_same_under_scale(GetParam(), std::array{ScaledScene{"many_lights.glb", false},
+                                                 ScaledScene{"atrium.glb", false}});
 }
 
 test::RenderSettings paused_picture(const test::Method& method) {
