@@ -64,8 +64,9 @@ class InstanceAttributes {
   std::optional<AccessorView> translation_, rotation_, scale_;
 };
 
-/// Whether Embree's transform of rays, in single precision, stays accurate: no determinant
-/// overflows, and errors grow by a small factor only.
+/// Whether Embree's transform of rays, in single precision, stays accurate: the determinant, a cube
+/// of the scale, is in the range of floats, and a condition of 64 moves the start of rays by less
+/// than 2^-14 of the scene's size (Instance::set_reach()).
 bool inverts_well(const M44d& to_world) {
   const Instance instance(to_world, 0);
   constexpr float largest = 0x1p30F, most = 64;

@@ -25,7 +25,6 @@ class SharedMeshes {
   /// Whether a node places an instance. Skinned and morphed meshes have a copy for each node, and
   /// so have those under transforms that single precision does not invert well.
   bool placed_as_instance(const file::Model& model, const PlacedNode& node) const;
-  bool any() const { return any_; }
 
  private:
   std::vector<bool> shared_;  // of each mesh

@@ -54,7 +54,7 @@ bool PathPerturbation::propose_from_eye(const WholePath& path, int start, PathBu
   first_ = start + 1;
   if (path.node(start).delta) return false;
   builder.keep(path, start, k + 1);
-  // Half of the moves of the film position also choose the point of the lens anew: the probability
+  // Half of the moves of the film position also resample the point on the lens: the probability
   // is the same both ways.
   if (start == 0 && builder.measure().camera().has_lens() && rng.decide(0.5F)) {
     builder.choose_eye(rng);
