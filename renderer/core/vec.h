@@ -10,6 +10,7 @@
 namespace lacuna {
 
 using Imath::M44d;
+using Imath::V2d;
 using Imath::V2f;
 using Imath::V2i;
 using Imath::V3d;
