@@ -20,6 +20,7 @@ struct ImportedTexture {
   double gamma = 1;            ///< if not srgb: linear = value^gamma
   std::array<Wrap, 2> wrap{Wrap::repeat, Wrap::repeat};  ///< u, v
   bool nearest = false;
+  bool inverted = false;  ///< 1 - value, after decoding
   /// uv of the picture = scale * uv of the mesh + offset; v upwards in both.
   V2d scale{1, 1}, offset{0, 0};
   Rgb even{0.4F, 0.4F, 0.4F}, odd{0.2F, 0.2F, 0.2F};  ///< linear; 2 x 2 squares in the unit square

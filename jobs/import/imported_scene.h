@@ -54,7 +54,11 @@ struct ImportedLight {
 
 /// Light from infinitely far: radiance `scale` times that of an equirectangular picture.
 struct ImportedEnvironment {
+  /// How a picture holds directions. `equal_area` is pbrt-v4's: equal_area_square() of the
+  /// direction in the picture's own coordinates with x reversed.
+  enum class Layout { equirectangular, equal_area };
   std::filesystem::path file;  ///< empty: constant
+  Layout layout = Layout::equirectangular;
   Rgb scale{1, 1, 1};
   /// Directions of the picture to those of the world. In the picture's own coordinates the centre
   /// is +x, up is +z, and the azimuth grows to the left (towards +y).
