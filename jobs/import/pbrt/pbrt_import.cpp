@@ -1,0 +1,28 @@
+#include "jobs/import/pbrt/pbrt_import.h"
+
+#include <fmt/format.h>
+
+#include "jobs/import/pbrt/pbrt_reader.h"
+#include "jobs/import/pbrt/pbrt_version.h"
+
+namespace lacuna {
+
+ImportedScene import_pbrt(const std::filesystem::path& file, MissingFiles missing) {
+  const auto version = pbrt::find_version(file);
+  pbrt::Reader reader(file, version.value_or(pbrt::Version::v4));
+  if (!version) {
+    reader.context().approximated({std::make_shared<const std::string>(file.filename()), 1}, "file",
+                                  "read as one of pbrt-v4, since nothing in it tells the version");
+  }
+  reader.read();
+  const auto& gone = reader.context().missing();
+  if (!gone.empty() && missing == MissingFiles::refuse) {
+    pbrt::fail(
+        gone[0].place,
+        fmt::format("{}: file \"{}\" does not exist{}", gone[0].owner, gone[0].name,
+                    gone.size() == 1 ? "" : fmt::format("; nor do {} more", gone.size() - 1)));
+  }
+  return reader.finish();
+}
+
+}  // namespace lacuna

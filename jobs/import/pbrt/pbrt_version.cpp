@@ -1,0 +1,61 @@
+#include "jobs/import/pbrt/pbrt_version.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lacuna::pbrt {
+namespace {
+
+template <std::size_t N>
+bool contains(const std::array<std::string_view, N>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+constexpr std::array<std::string_view, 11> v3_materials{
+    "matte", "plastic",     "uber",   "substrate",    "metal",  "mirror",
+    "glass", "translucent", "disney", "kdsubsurface", "fourier"};
+constexpr std::array<std::string_view, 9> v4_materials{
+    "diffuse",        "coateddiffuse",       "conductor", "coatedconductor", "dielectric",
+    "thindielectric", "diffusetransmission", "interface", "measured"};
+
+std::optional<Version> of_film(std::string_view type) {
+  if (type == "image") return Version::v3;
+  if (type == "rgb" || type == "gbuffer" || type == "spectral") return Version::v4;
+  return {};
+}
+
+std::optional<Version> of_material(std::string_view type) {
+  if (contains(v3_materials, type)) return Version::v3;
+  if (contains(v4_materials, type)) return Version::v4;
+  return {};
+}
+
+}  // namespace
+
+std::optional<Version> find_version(const std::filesystem::path& file) {
+  Tokens tokens(file);
+  std::string_view before, statement;
+  bool is_type = false;  // of a material: the value after "string type"
+  while (const auto token = tokens.next()) {
+    if (token->kind == Token::Kind::word) {
+      statement = token->text;
+      if (contains<4>({"Option", "ColorSpace", "Attribute", "Import"}, statement))
+        return Version::v4;
+      before = statement;
+      continue;
+    }
+    if (token->kind != Token::Kind::text) continue;
+    std::optional<Version> found;
+    if (before == "Film") found = of_film(token->text);
+    if (before == "Material" || (statement == "MakeNamedMaterial" && is_type)) {
+      found = of_material(token->text);
+    }
+    if (statement == "Texture" && token->text == "color") found = Version::v3;
+    if (found) return found;
+    is_type = token->text == "string type";
+    before = token->text;
+  }
+  return {};
+}
+
+}  // namespace lacuna::pbrt
