@@ -51,11 +51,13 @@ OrderedJson operation(const RouteDoc& doc, OrderedJson parameters) {
         {{"name", p.name}, {"in", "query"}, {"description", p.doc}, {"schema", schema(p)}});
   }
   if (!parameters.empty()) result["parameters"] = std::move(parameters);
-  if (!doc.body_type.empty()) {
+  if (!doc.body_types.empty()) {
     OrderedJson content = OrderedJson::object();
-    if (!doc.body_schema.empty()) content["schema"] = parse_own(doc.body_schema);
-    result["requestBody"] = {{"required", true},
-                             {"content", {{doc.body_type, std::move(content)}}}};
+    for (const std::string& type : doc.body_types) {
+      content[type] = OrderedJson::object();
+      if (!doc.body_schema.empty()) content[type]["schema"] = parse_own(doc.body_schema);
+    }
+    result["requestBody"] = {{"required", true}, {"content", std::move(content)}};
   }
   result["responses"] = answers(doc);
   if (!doc.needs_token) result["security"] = OrderedJson::array();

@@ -24,7 +24,7 @@ struct QueryParameter {
 struct RouteDoc {
   std::string summary = {};
   std::vector<QueryParameter> query = {};                 ///< others are refused
-  std::string body_type = {};                             ///< media type; empty: it takes no body
+  std::vector<std::string> body_types = {};               ///< media types; empty: it takes no body
   std::string body_schema = {};                           ///< JSON Schema, as text; empty: none
   std::vector<std::pair<int, std::string>> answers = {};  ///< status, and what it means
   bool needs_token = true;                                ///< if the service has one

@@ -144,7 +144,7 @@ RouteDoc list_doc() {
 RouteDoc post_doc() {
   return {.summary = "Queues a job; with an Idempotency-Key, once",
           .query = {{"dry_run", QueryType::flag, "only check it and fill in its defaults"}},
-          .body_type = "application/json",
+          .body_types = {"application/json"},
           .body_schema = job_schema(),
           .answers = {{201, "the job is stored and queued"},
                       {200, "dry run; or the job created before with the same key"},
@@ -157,7 +157,7 @@ RouteDoc post_doc() {
 /// The description of a route that changes a job.
 RouteDoc change_doc(std::string summary, std::string conflict, std::string body_schema = {}) {
   RouteDoc doc{.summary = std::move(summary)};
-  if (!body_schema.empty()) doc.body_type = "application/json";
+  if (!body_schema.empty()) doc.body_types = {"application/json"};
   doc.body_schema = std::move(body_schema);
   doc.answers = {{200, "the changed job"},
                  {404, "no such job"},

@@ -21,6 +21,7 @@
 #include "jobs/queue/child_process.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/store/exit_code.h"
+#include "server/routes/scene_archive.h"
 
 namespace lacuna {
 namespace {
@@ -52,6 +53,21 @@ bool same_bytes(const fs::path& there, const fs::path& draft) {
     }
   } while (a && b);
   return a.eof() && b.eof();
+}
+
+/// Whether two folders have the same files; `there` may have anything in it.
+bool same_folders(const fs::path& there, const fs::path& draft) {
+  if (!fs::is_directory(fs::symlink_status(there))) return false;
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(draft)) {
+    if (!entry.is_regular_file()) continue;
+    ++files;
+    if (!same_bytes(there / entry.path().lexically_relative(draft), entry.path())) return false;
+  }
+  const fs::recursive_directory_iterator all(there);
+  return std::count_if(begin(all), end(all), [](const fs::directory_entry& e) {
+           return !fs::is_directory(e.symlink_status());
+         }) == static_cast<std::ptrdiff_t>(files);
 }
 
 /// A file in memory for a child's output.
@@ -96,10 +112,10 @@ std::vector<std::string> own_environment() {
 }  // namespace
 
 bool is_upload_name(std::string_view name) {
-  constexpr std::string_view extension = ".glb";
   constexpr std::size_t longest = 80;
-  if (!name.ends_with(extension) || name.find("..") != std::string_view::npos) return false;
-  const std::string_view stem = name.substr(0, name.size() - extension.size());
+  if (!name.ends_with(".glb") && !name.ends_with(".zip")) return false;
+  if (name.find("..") != std::string_view::npos) return false;
+  const std::string_view stem = name.substr(0, name.size() - 4);
   const auto plain = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
   };
@@ -148,55 +164,98 @@ SceneUploads::SceneUploads(SceneUploadSettings settings) : settings_(std::move(s
   for (const fs::path& folder : left) fs::remove_all(folder, ignored);
 }
 
+/// What is uploaded: a file, or the folder of an archive.
+struct SceneUploads::Upload {
+  Upload(const fs::path& draft, std::string file_name)
+      : name(std::move(file_name)),
+        archived(name.ends_with(".zip")),
+        bytes(fs::file_size(draft)),
+        content(archived ? fs::path(draft).replace_extension() : draft),
+        scene(archived ? content / archived_scene : content) {
+    if (archived) name.resize(name.size() - 4);
+  }
+
+  bool same_as(const fs::path& there) const {
+    return archived ? same_folders(there, content) : same_bytes(there, content);
+  }
+  Result stored(Outcome outcome) const {
+    return {outcome, bytes, archived ? name + "/" + archived_scene : name};
+  }
+  Result not_stored(Outcome outcome, const std::string& reason) const {
+    return {outcome, bytes, "", reason};
+  }
+  /// Unlike a rename of files, neither replaces anything. False: something has that name.
+  bool move_to(const fs::path& target) const {
+    const int failed = archived ? ::renameat2(AT_FDCWD, content.c_str(), AT_FDCWD, target.c_str(),
+                                              RENAME_NOREPLACE)
+                                : ::link(content.c_str(), target.c_str());
+    if (failed != 0 && errno != EEXIST) throw_file_error(errno, "create", target);
+    return failed == 0;
+  }
+
+  std::string name;  ///< of the file or folder, in a scenes root
+  bool archived;
+  std::uint64_t bytes;      ///< of the body
+  fs::path content, scene;  ///< before it has its name
+};
+
 SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name) {
   if (!is_upload_name(name)) {
     throw std::invalid_argument(fmt::format("found \"{}\"; {}", name, upload_name_rule));
   }
   draft.finish();
-  const std::uint64_t bytes = fs::file_size(draft.file());
-  const fs::path target = settings_.folder / name;
+  const Upload upload(draft.file(), name);
+  const std::unique_lock lock(checking_, std::try_to_lock);
+  if (!lock) return upload.not_stored(Outcome::busy, "Another scene is being checked.");
+  if (is_requested(stop_)) {
+    return upload.not_stored(Outcome::busy, "The service is shutting down.");
+  }
+  if (upload.archived) {
+    try {
+      unpack_scene(draft.file(), upload.content);
+    } catch (const BadArchive& error) {
+      return upload.not_stored(Outcome::refused, error.what());
+    }
+  }
   const auto known = [&](const fs::path& there) {
-    return Result{same_bytes(there, draft.file()) ? Outcome::same : Outcome::conflict, bytes};
+    return upload.stored(upload.same_as(there) ? Outcome::same : Outcome::conflict);
   };
   // A job that names the scene would get the older root's.
   for (const fs::path& root : settings_.older) {
-    if (fs::is_regular_file(fs::symlink_status(root / name))) return known(root / name);
+    if (fs::exists(fs::symlink_status(root / upload.name))) return known(root / upload.name);
   }
-  const std::unique_lock lock(checking_, std::try_to_lock);
-  if (!lock) return {Outcome::busy, bytes, "Another scene is being checked."};
-  if (is_requested(stop_)) return {Outcome::busy, bytes, "The service is shutting down."};
+  const fs::path target = settings_.folder / upload.name;
   if (fs::exists(fs::symlink_status(target))) return known(target);
-  if (!is_glb(draft.file())) {
-    return {Outcome::refused, bytes, "it is not a GLB: it does not begin with \"glTF\""};
-  }
-  const Result result = [&] {
-    try {
-      return check(draft.file(), bytes);
-    } catch (const std::system_error& error) {
-      return Result{Outcome::busy, bytes, error.code().message()};
-    }
-  }();
+  const Result result = checked(upload);
   if (result.outcome != Outcome::created) return result;
-  // Unlike a rename, a link never replaces a file.
-  if (::link(draft.file().c_str(), target.c_str()) != 0) {
-    if (errno == EEXIST) return known(target);
-    throw_file_error(errno, "create", target);
-  }
+  if (!upload.move_to(target)) return known(target);
   try {
     sync_folder(settings_.folder);
   } catch (const std::system_error&) {  // a failed upload must not remain
-    if (::unlink(target.c_str()) == 0) throw;
+    std::error_code failed;
+    if (fs::remove_all(target, failed) > 0 && !failed) throw;
   }
   return result;
 }
 
+SceneUploads::Result SceneUploads::checked(const Upload& upload) const {
+  if (!is_glb(upload.scene)) {
+    return upload.not_stored(Outcome::refused, "it is not a GLB: it does not begin with \"glTF\"");
+  }
+  try {
+    return check(upload);
+  } catch (const std::system_error& error) {
+    return upload.not_stored(Outcome::busy, error.code().message());
+  }
+}
+
 /// Returns `created` if the scene is valid.
-SceneUploads::Result SceneUploads::check(const fs::path& file, std::uint64_t bytes) const {
+SceneUploads::Result SceneUploads::check(const Upload& upload) const {
   const FileHandle output = output_file();
   ChildLimits limits = settings_.limits;
   limits.file_bytes = longest_output;
   const Command command{
-      .arguments = {settings_.renderer.string(), "check", "--scene", file.string()},
+      .arguments = {settings_.renderer.string(), "check", "--scene", upload.scene.string()},
       .environment = own_environment(),
       .directory = settings_.folder,
       .output_fd = output.get(),
@@ -206,25 +265,28 @@ SceneUploads::Result SceneUploads::check(const fs::path& file, std::uint64_t byt
     child.signal(SIGKILL);
     child.wait(-1, std::chrono::milliseconds(-1));
     child.reap();
-    if (is_requested(stop_)) return {Outcome::busy, bytes, "The service is shutting down."};
-    return {Outcome::refused, bytes,
-            fmt::format("it could not be checked within {} s",
-                        static_cast<double>(settings_.time.count()) / 1000)};
+    if (is_requested(stop_)) {
+      return upload.not_stored(Outcome::busy, "The service is shutting down.");
+    }
+    return upload.not_stored(Outcome::refused,
+                             fmt::format("it could not be checked within {} s",
+                                         static_cast<double>(settings_.time.count()) / 1000));
   }
   const Ending end = child.reap();
   const bool exited = end.kind == Ending::Kind::exited;
-  if (exited && end.code == exit_done) return {Outcome::created, bytes};
+  if (exited && end.code == exit_done) return upload.stored(Outcome::created);
   if (exited && end.code == exit_memory) {
-    return {Outcome::refused, bytes,
-            fmt::format("loading it takes more memory than allowed{}",
-                        limits.memory_bytes > 0 ? ", " + byte_size_text(limits.memory_bytes) : "")};
+    return upload.not_stored(
+        Outcome::refused,
+        fmt::format("loading it takes more memory than allowed{}",
+                    limits.memory_bytes > 0 ? ", " + byte_size_text(limits.memory_bytes) : ""));
   }
-  const std::string said = tidy(last_line(output.get()), file);
+  const std::string said = tidy(last_line(output.get()), upload.scene);
   const bool for_now = never_began(end) || (exited && end.code == exit_interrupted) ||
                        !why_it_cannot_begin(command, end, stop_).empty();
-  if (for_now) return {Outcome::busy, bytes, said.empty() ? end.reason : said};
+  if (for_now) return upload.not_stored(Outcome::busy, said.empty() ? end.reason : said);
   const bool told = exited && end.code == exit_asset && !said.empty();
-  return {Outcome::refused, bytes, told ? said : "its check failed: " + end.reason};
+  return upload.not_stored(Outcome::refused, told ? said : "its check failed: " + end.reason);
 }
 
 }  // namespace lacuna

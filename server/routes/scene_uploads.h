@@ -22,16 +22,17 @@ struct SceneUploadSettings {
   std::chrono::milliseconds time{120'000};        ///< that a check may take
 };
 
-/// "NAME.glb": a letter or digit, then at most 79 letters, digits, '.', '_' or '-', never "..".
+/// "NAME.glb" or "NAME.zip": a letter or digit, then at most 79 letters, digits, '.', '_' or '-',
+/// never "..".
 bool is_upload_name(std::string_view name);
 inline constexpr const char* upload_name_rule =
     "allowed: a letter or digit, then up to 79 letters, digits, '.', '_' or '-' without \"..\", "
-    "and "
-    "\".glb\" (letters are a to z and A to Z)";
+    "and \".glb\" or \".zip\" (letters are a to z and A to Z)";
 
-/// Scenes uploaded over the network: a child process checks each before it gets its name; it never
-/// replaces another. A scene may refer to no other file: during the check it lies alone in a
-/// folder, with an unguessable name.
+/// Scenes uploaded over the network, each a GLB or the archive of a folder (scene_archive.h): a
+/// child process checks each before it gets its name; it never replaces another. A scene may refer
+/// to no file but those of its archive: during the check it lies alone in a folder, with an
+/// unguessable name.
 class SceneUploads {
  public:
   /// Creates the folder, and removes unfinished uploads of an earlier service. Throws
@@ -65,7 +66,8 @@ class SceneUploads {
   };
   struct Result {
     Outcome outcome;
-    std::uint64_t bytes = 0;  ///< of the scene
+    std::uint64_t bytes = 0;  ///< of the body
+    std::string scene = {};   ///< if it is stored: its name for jobs
     std::string reason = {};  ///< one line, at most 4 KiB
   };
   /// Checks a draft and gives it its name. Blocks during the check; called from several threads.
@@ -77,7 +79,9 @@ class SceneUploads {
   void stop() const { stop_.request(); }
 
  private:
-  Result check(const std::filesystem::path& file, std::uint64_t bytes) const;
+  struct Upload;
+  Result checked(const Upload& upload) const;
+  Result check(const Upload& upload) const;
 
   const SceneUploadSettings settings_;
   StopSignal stop_;

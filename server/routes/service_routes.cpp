@@ -122,8 +122,9 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
     throw HttpError(400,
                     fmt::format("A scene cannot be named \"{}\"; {}.", sent, upload_name_rule));
   }
-  if (media_type(request) != "model/gltf-binary") {
-    throw HttpError(415, "A scene is sent with Content-Type: model/gltf-binary.");
+  const char* type = name.ends_with(".zip") ? "application/zip" : "model/gltf-binary";
+  if (media_type(request) != type) {
+    throw HttpError(415, fmt::format("\"{}\" is sent with Content-Type: {}.", name, type));
   }
   SceneUploads::Draft draft = facts_.uploads->begin();
   request.read_body_to(draft.fd(), max_scene_bytes);
@@ -131,9 +132,9 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
   using Outcome = SceneUploads::Outcome;
   switch (result.outcome) {
     case Outcome::created:
-      return json_response(201, {{"scene", name}, {"bytes", result.bytes}});
+      return json_response(201, {{"scene", result.scene}, {"bytes", result.bytes}});
     case Outcome::same:
-      return json_response(200, {{"scene", name}, {"bytes", result.bytes}});
+      return json_response(200, {{"scene", result.scene}, {"bytes", result.bytes}});
     case Outcome::conflict:
       throw HttpError(
           409,
@@ -180,8 +181,10 @@ void ServiceRoutes::add_to(Router& router) {
              });
   router.add(
       "PUT", "/api/scenes/{name}",
-      {.summary = "Stores a scene if it can be rendered; never replaces one",
-       .body_type = "model/gltf-binary",
+      {.summary =
+           "Stores a scene (NAME.glb), or the folder of one (NAME.zip, application/zip, with "
+           "scene.glb and what it refers to), if it can be rendered; never replaces one",
+       .body_types = {"model/gltf-binary", "application/zip"},
        .answers = {{201, "it is stored"},
                    {200, "the same bytes were stored already"},
                    {400, upload_name_rule},

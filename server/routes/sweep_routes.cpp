@@ -96,7 +96,7 @@ RouteDoc sweep_post_doc() {
               "Queues a sweep: many jobs that differ in some settings; with an "
               "Idempotency-Key, once",
           .query = {{"dry_run", QueryParameter::Type::flag, "only check it and return its cells"}},
-          .body_type = "application/json",
+          .body_types = {"application/json"},
           .body_schema = sweep_schema(),
           .answers = {{201, "the sweep is stored; its runs become jobs, a few at a time"},
                       {200, "dry run; or the sweep created before with the same key"},

@@ -219,6 +219,16 @@ test("what the HTTP library would decode, pack or take apart in answers and bodi
   assert.equal((await service.raw(`${head("PUT /api/scenes/a.glb", parts)}0123456789`)).status, 415);
 });
 
+test("the type of an upload is that of its name", async (t) => {
+  const service = await Service.start(folders(t), ["--uploads"]);
+  for (const [name, wrong, right] of [["a.glb", "application/zip", "model/gltf-binary"],
+    ["a.zip", "model/gltf-binary", "application/zip"]]) {
+    const put = (type) => service.fetch(`/api/scenes/${name}`, { method: "PUT", body: "x", headers: { "Content-Type": type } });
+    assert.ok((await problem(await put(wrong), 415)).detail.endsWith(`${right}.`));
+    await problem(await put(right), 422);
+  }
+});
+
 test("an upload under a name that is not allowed is told what is", async (t) => {
   const service = await Service.start(folders(t), ["--uploads"]);
   const put = (name) => service.fetch(`/api/scenes/${name}`, { method: "PUT", body: "glTF",

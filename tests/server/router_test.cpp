@@ -26,7 +26,7 @@ Router make_router() {
               .answers = {{200, "The list."}, {400, "A bad query."}}},
              handler);
   router.add("POST", "/jobs",
-             {.body_type = "application/json", .body_schema = R"({"type": "object"})"}, handler);
+             {.body_types = {"application/json"}, .body_schema = R"({"type": "object"})"}, handler);
   router.add("DELETE", "/jobs/{id}/files/{name}", handler);
   return router;
 }
