@@ -43,6 +43,7 @@ TARGETS = (
     # A size is believed, without being touched, until pixels lack: 32768 x 32768 x 4 floats.
     Target("float_image", 4096, 1024, max_malloc_mb=20000),
     Target("texture", 4096, 1024),
+    Target("pbrt", 4096, 1024),
 )
 SECONDS_PER_INPUT = 60  # against hangs only: the machine may be busy
 

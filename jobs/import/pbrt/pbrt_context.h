@@ -42,7 +42,7 @@ class Context {
   const Version version;
   const std::filesystem::path folder;  ///< of the main file
   ColourSpace colours = ColourSpace::srgb;
-  std::shared_ptr<Names> names = std::make_shared<Names>();
+  Names names;
 
   bool is_v3() const { return version == Version::v3; }
 

@@ -150,8 +150,8 @@ void read_light(Context& context, ImportedScene& scene, const std::string& type,
   context.note_unused(parameters);
 }
 
-AreaLight area_light(Context& context, const Parameters& parameters, const Areas& areas,
-                     bool of_triangles) {
+AreaLight area_light(Context& context, const Parameters& parameters,
+                     const std::function<Areas()>& find_areas, bool of_triangles) {
   const LightStatement s{context, parameters};
   AreaLight out;
   out.radiance.value = s.scaled("L");
@@ -162,6 +162,7 @@ AreaLight area_light(Context& context, const Parameters& parameters, const Areas
     if (const auto texture = picture(context, parameters, file)) out.radiance.texture = texture;
   }
   if (parameters.number("power", -1) > 0) {
+    const Areas areas = find_areas();
     // Each triangle is a light of its own, and has the power.
     const double area = of_triangles ? (areas.least + areas.most) / 2 : areas.total;
     if (of_triangles && areas.most > 1.001 * areas.least) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "jobs/import/pbrt/pbrt_context.h"
@@ -18,7 +19,8 @@ struct AreaLight {
   ImportedValue radiance;
   bool two_sided = false;
 };
-AreaLight area_light(Context& context, const Parameters& parameters, const Areas& areas,
-                     bool of_triangles);
+/// `find_areas` is called for a light of a power.
+AreaLight area_light(Context& context, const Parameters& parameters,
+                     const std::function<Areas()>& find_areas, bool of_triangles);
 
 }  // namespace lacuna::pbrt

@@ -106,7 +106,7 @@ ImportedMaterial diffuse_both_sides(Context& context, const Parameters& paramete
 
 std::shared_ptr<MaterialEntry> named_material(Context& context, const std::string& name,
                                               const Place& place) {
-  auto& entry = context.names->materials[name];
+  auto& entry = context.names.materials[name];
   if (entry == nullptr) {
     entry = std::make_shared<MaterialEntry>();
     entry->material = std::make_shared<ImportedMaterial>();

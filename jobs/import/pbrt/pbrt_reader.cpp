@@ -2,14 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "jobs/import/pbrt/pbrt_colours.h"
-#include "jobs/import/pbrt/pbrt_lights.h"
 #include "jobs/import/pbrt/pbrt_materials.h"
-#include "jobs/import/pbrt/pbrt_textures.h"
 
 namespace lacuna::pbrt {
+namespace {
+
+/// Of parameters that many later statements copy.
+void require_few_values(const Parameters& p) {
+  constexpr std::size_t most = 4096;
+  std::size_t count = 0;
+  for (const Parameter& x : p.all()) count += x.numbers.size() + x.texts.size();
+  if (count > most) fail(p.place(), fmt::format("{}: more than {} values", p.owner(), most));
+}
+
+}  // namespace
 
 Reader::Reader(const std::filesystem::path& file, Version version)
     : context_(file, version), tokens_(file), shape_reader_(context_) {
@@ -144,6 +151,7 @@ bool Reader::world_statement(std::string_view name, const Place& place) {
     if (area->type != "diffuse" && area->type != "area") {
       fail(place, fmt::format("area light \"{}\"; allowed: diffuse", area->type));
     }
+    require_few_values(area->parameters);
     state_.area_light = std::move(area);
   } else if (name == "Material") {
     material(place);
@@ -172,7 +180,7 @@ void Reader::push(Scope scope, const Place& place) {
   if (pushed_.size() == max_nesting) {
     fail(place, fmt::format("attributes are nested {} deep, which is the limit", max_nesting));
   }
-  pushed_.push_back({scope, place, state_, context_.names});
+  pushed_.push_back({scope, place, state_, {}});
 }
 
 void Reader::pop(Scope scope, const Place& place) {
@@ -181,22 +189,17 @@ void Reader::pop(Scope scope, const Place& place) {
                                 : fmt::format("what begins at {} does not end before this",
                                               pushed_.back().place.text()));
   }
-  Pushed& p = pushed_.back();
-  if (scope == Scope::transform) {
-    state_.ctm = p.state.ctm;
-  } else {
-    state_ = std::move(p.state);
-    if (context_.is_v3()) context_.names = std::move(p.names);
-  }
+  Pushed p = std::move(pushed_.back());
   pushed_.pop_back();
-}
-
-Names& Reader::own_names() {
-  // In pbrt-v3 a definition ends with its scope; in pbrt-v4 names are those of the whole scene.
-  if (context_.is_v3() && context_.names.use_count() > 1) {
-    context_.names = std::make_shared<Names>(*context_.names);
+  if (scope != Scope::transform) {
+    state_ = std::move(p.state);
+    for (; !p.undo.empty(); p.undo.pop_back()) p.undo.back()(context_.names);
+    return;
   }
-  return *context_.names;
+  state_.ctm = p.state.ctm;
+  if (pushed_.empty()) return;
+  auto& undo = pushed_.back().undo;
+  undo.insert(undo.end(), p.undo.begin(), p.undo.end());
 }
 
 void Reader::include(const Place& place, bool import) {
@@ -236,8 +239,9 @@ void Reader::attribute(const Place& place) {
          fmt::format("Attribute \"{}\"; allowed: shape, light, material, medium, texture", target));
   }
   Parameters p(tokens_, place, fmt::format("Attribute \"{}\"", target));
-  p.add_defaults(state_.defaults[target]);
-  state_.defaults[target] = std::move(p);
+  add_defaults(p, target.c_str());
+  require_few_values(p);
+  state_.defaults[target] = std::make_shared<const Parameters>(std::move(p));
 }
 
 void Reader::medium_interface(const Place& place) {
@@ -268,169 +272,6 @@ Statement Reader::typed_statement(std::string_view name, const Place& place) {
   out.type = text(place, "a type");
   out.parameters = Parameters(tokens_, place, fmt::format("{} \"{}\"", name, out.type));
   return out;
-}
-
-void Reader::note_animation(const Place& place, const std::string& name) {
-  if (!state_.ctm.is_animated()) return;
-  context_.approximated(place, name, "stands still where it is at the start of the shutter");
-}
-
-void Reader::texture(const Place& place) {
-  const std::string name = text(place, "the name of a texture");
-  const std::string type = text(place, "float or spectrum");
-  Statement s = typed_statement("Texture", place);
-  s.parameters.add_defaults(state_.defaults["texture"]);
-  own_names();
-  read_texture(context_, name, type, s.type, s.parameters);
-}
-
-void Reader::material(const Place& place) {
-  Statement s = typed_statement("Material", place);
-  s.parameters.add_defaults(state_.defaults["material"]);
-  const auto entry = std::make_shared<MaterialEntry>();
-  *(entry->material = std::make_shared<ImportedMaterial>()) =
-      make_material(context_, s.type, s.parameters, entry->invisible);
-  entry->defined = true;
-  state_.material = entry;
-}
-
-void Reader::make_named_material(const Place& place) {
-  const std::string name = text(place, "the name of a material");
-  Parameters p(tokens_, place, fmt::format("material \"{}\"", name));
-  p.add_defaults(state_.defaults["material"]);
-  const std::string type = p.text("type", context_.is_v3() ? "matte" : "diffuse");
-  // A second definition of a name is another material for what comes later.
-  Names& names = own_names();
-  const auto known = names.materials.find(name);
-  if (known != names.materials.end() && known->second->defined) names.materials.erase(known);
-  const auto entry = named_material(context_, name, place);
-  entry->defined = true;
-  *entry->material = make_material(context_, type, p, entry->invisible);
-  entry->material->name = name;
-}
-
-void Reader::light(const Place& place) {
-  Statement s = typed_statement("LightSource", place);
-  s.parameters.add_defaults(state_.defaults["light"]);
-  note_animation(place, s.parameters.owner());
-  read_light(context_, scene_, s.type, s.parameters, state_.ctm.start());
-}
-
-void Reader::shape(const Place& place) {
-  Statement s = typed_statement("Shape", place);
-  s.parameters.add_defaults(state_.defaults["shape"]);
-  note_animation(place, s.parameters.owner());
-  const auto geometry = shape_reader_.read(s.type, s.parameters, state_.reversed);
-  auto alpha = float_value(context_, s.parameters, "alpha");
-  if (s.parameters.find("shadowalpha", {"float", "texture"}) != nullptr) {
-    context_.left_out(place, s.parameters.owner(), "an opacity of shadows of its own");
-  }
-  context_.note_unused(s.parameters);
-  if (!geometry) return;
-  Shape out;
-  out.shape.name = s.type;
-  out.shape.place = place.text();
-  out.shape.mesh = geometry->mesh;
-  out.shape.to_world = geometry->to_object * state_.ctm.start();
-  out.shape.flipped = geometry->flipped;
-  out.material = state_.material;
-  if (state_.area_light != nullptr) {
-    emit(out, s.parameters,
-         s.type == "trianglemesh" || s.type == "plymesh" || s.type == "loopsubdiv");
-    if (alpha && alpha->texture == nullptr && out.shape.radiance) {
-      context_.approximated(place, s.parameters.owner(), "a light with an opacity is opaque");
-      alpha.reset();
-    }
-  }
-  const bool opaque = !alpha || (alpha->texture == nullptr && alpha->value.x >= 1);
-  if (!opaque) out.alpha = alpha;
-  add(std::move(out), place);
-}
-
-void Reader::emit(Shape& out, const Parameters& parameters, bool of_triangles) {
-  if (open_object_) {
-    context_.left_out(parameters.place(), parameters.owner(),
-                      "the light of a shape within an object, as pbrt has it");
-    return;
-  }
-  const Parameters& p = state_.area_light->parameters;
-  const AreaLight light = area_light(context_, p.copy_for(p.place(), p.owner()),
-                                     areas_of(*out.shape.mesh, out.shape.to_world), of_triangles);
-  out.shape.radiance = light.radiance;
-  out.shape.emits_behind = light.two_sided;
-}
-
-void Reader::add(Shape shape, const Place& place) {
-  auto& to = open_object_ ? objects_[*open_object_] : shapes_;
-  if (to.size() == max_shapes) fail(place, fmt::format("more than {} shapes", max_shapes));
-  to.push_back(std::move(shape));
-}
-
-void Reader::begin_object(const Place& place) {
-  if (open_object_) fail(place, "an object within an object");
-  push(Scope::object, place);
-  open_object_ = text(place, "the name of an object");
-  objects_[*open_object_].clear();
-}
-
-void Reader::end_object(const Place& place) {
-  pop(Scope::object, place);
-  open_object_.reset();
-}
-
-void Reader::instance(const Place& place) {
-  const std::string name = text(place, "the name of an object");
-  const auto found = objects_.find(name);
-  if (found == objects_.end()) fail(place, fmt::format("there is no object \"{}\"", name));
-  if (open_object_) fail(place, "an instance within an object");
-  note_animation(place, "ObjectInstance");
-  for (const Shape& s : found->second) {
-    Shape copy = s;
-    copy.shape.to_world = s.shape.to_world * state_.ctm.start();
-    add(std::move(copy), place);
-  }
-}
-
-std::shared_ptr<const ImportedMaterial> Reader::material_of(const Shape& shape) {
-  const auto& material = shape.material->material;
-  if (!shape.alpha) return material;
-  const ImportedValue& alpha = *shape.alpha;
-  auto& cut = cut_out_[{material.get(), alpha.texture.get(), alpha.value.x}];
-  if (cut == nullptr) {
-    const auto copy = std::make_shared<ImportedMaterial>(*material);
-    copy->opacity = alpha;
-    cut = copy;
-  }
-  return cut;
-}
-
-ImportedScene Reader::finish() {
-  context_.require_materials();
-  const View view = read_view(context_, options_);
-  M44d mirror;
-  if (view.mirrored) mirror.setScale(V3d(-1, 1, 1));
-  scene_.cameras = {view.camera};
-  scene_.picture = view.picture;
-  for (Shape& s : shapes_) {
-    if (s.material->invisible && !s.shape.radiance) continue;
-    if (s.shape.radiance) s.shape.radiance->value *= view.exposure;
-    s.shape.material = material_of(s);
-    s.shape.to_world = s.shape.to_world * mirror;
-    scene_.shapes.push_back(std::move(s.shape));
-  }
-  for (ImportedLight& light : scene_.lights) {
-    light.intensity *= view.exposure;
-    light.position = light.position * mirror;
-    light.direction = light.direction * mirror;
-  }
-  if (scene_.environment) {
-    scene_.environment->scale *= view.exposure;
-    M44d turn = scene_.environment->to_world;
-    turn[3][0] = turn[3][1] = turn[3][2] = 0;
-    scene_.environment->to_world = turn * mirror;
-  }
-  scene_.notes = context_.notes();
-  return std::move(scene_);
 }
 
 }  // namespace lacuna::pbrt

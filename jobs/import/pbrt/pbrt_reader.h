@@ -45,14 +45,14 @@ class Reader {
     std::shared_ptr<const MaterialEntry> material;
     std::shared_ptr<const Statement> area_light;
     ColourSpace colours = ColourSpace::srgb;
-    std::map<std::string, Parameters> defaults;  // of pbrt-v4's Attribute
+    std::map<std::string, std::shared_ptr<const Parameters>> defaults;  // of pbrt-v4's Attribute
   };
   enum class Scope { attribute, transform, object, import };
   struct Pushed {
     Scope scope;
     Place place;
     State state;
-    std::shared_ptr<Names> names;  // pbrt-v3's are those of the scope
+    std::vector<std::function<void(Names&)>> undo;  // of pbrt-v3's names, which end with the scope
   };
 
   void statement(const Token& word);
@@ -84,7 +84,10 @@ class Reader {
   void add(Shape shape, const Place& place);
   std::shared_ptr<const ImportedMaterial> material_of(const Shape& shape);
   void note_animation(const Place& place, const std::string& name);
-  Names& own_names();
+  /// In pbrt-v3 the scope's end brings back what `name` is now.
+  template <class Map>
+  void define(Map Names::*map, const std::string& name);
+  void add_defaults(Parameters& parameters, const char* target) const;
 
   Context context_;
   Tokens tokens_;

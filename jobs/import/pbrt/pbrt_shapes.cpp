@@ -86,10 +86,20 @@ void read_vertices(const Parameters& p, ImportedMesh& mesh) {
 }
 
 template <class Make>
-ShapeReader::Mesh ShapeReader::shared(const std::string& key, Make&& make) {
+ShapeReader::Mesh ShapeReader::shared(const std::string& key, const Place& place, Make&& make) {
   Mesh& mesh = meshes_[key];
-  if (mesh == nullptr) mesh = std::make_shared<const ImportedMesh>(make());
+  if (mesh == nullptr) {
+    mesh = std::make_shared<const ImportedMesh>(make());
+    count(*mesh, place);
+  }
   return mesh;
+}
+
+void ShapeReader::count(const ImportedMesh& mesh, const Place& place) {
+  triangles_ += mesh.triangles.size();
+  if (triangles_ > max_triangles) {
+    fail(place, fmt::format("more than {} triangles in all meshes", max_triangles));
+  }
 }
 
 ShapeReader::Mesh ShapeReader::triangle_mesh(const Parameters& p) {
@@ -115,7 +125,7 @@ ShapeReader::Mesh ShapeReader::ply(const Parameters& p) {
   }
   p.ignore({"displacement.edgelength", "edgelength"});
   if (!file) return nullptr;
-  return shared("plymesh " + name, [&] {
+  return shared("plymesh " + name, p.place(), [&] {
     try {
       const std::string bytes = read_unzipped(*file, max_mesh_bytes);
       const std::span<const std::uint8_t> view(reinterpret_cast<const std::uint8_t*>(bytes.data()),
@@ -152,12 +162,13 @@ std::optional<Geometry> ShapeReader::turned(const std::string& type, const Param
     const auto cut = [&](double z) { return std::clamp(z / radius, -1.0, 1.0); };
     const double from = cut(std::min(bottom, top)), to = cut(std::max(bottom, top));
     if (!(from < to)) return {};
-    out.mesh = shared(fmt::format("sphere {} {} {}", from, to, turn),
+    out.mesh = shared(fmt::format("sphere {} {} {}", from, to, turn), p.place(),
                       [&] { return sphere_mesh(from, to, turn); });
     place(radius, 0);
   } else if (type == "cylinder") {
     if (bottom == top) return {};
-    out.mesh = shared(fmt::format("cylinder {}", turn), [&] { return cylinder_mesh(turn); });
+    out.mesh =
+        shared(fmt::format("cylinder {}", turn), p.place(), [&] { return cylinder_mesh(turn); });
     place(std::abs(top - bottom), std::min(bottom, top));
   } else if (type == "disk") {
     const double inner = p.number("innerradius", 0) / radius;
@@ -165,12 +176,12 @@ std::optional<Geometry> ShapeReader::turned(const std::string& type, const Param
       fail(p.place(),
            fmt::format("{}: innerradius {}; allowed: 0 to the radius", p.owner(), inner * radius));
     }
-    out.mesh =
-        shared(fmt::format("disk {} {}", inner, turn), [&] { return disk_mesh(inner, turn); });
+    out.mesh = shared(fmt::format("disk {} {}", inner, turn), p.place(),
+                      [&] { return disk_mesh(inner, turn); });
     place(radius, height);
   } else if (type == "cone") {
     if (height == 0) return {};
-    out.mesh = shared(fmt::format("cone {}", turn), [&] { return cone(turn); });
+    out.mesh = shared(fmt::format("cone {}", turn), p.place(), [&] { return cone(turn); });
     place(height, 0);
   } else {
     const double from = std::min(bottom, top), to = std::max(bottom, top);
@@ -178,7 +189,7 @@ std::optional<Geometry> ShapeReader::turned(const std::string& type, const Param
       fail(p.place(),
            fmt::format("{}: zmin {}, zmax {}; allowed: 0 <= zmin < zmax", p.owner(), from, to));
     }
-    out.mesh = shared(fmt::format("paraboloid {} {}", from / to, turn),
+    out.mesh = shared(fmt::format("paraboloid {} {}", from / to, turn), p.place(),
                       [&] { return paraboloid(from / to, turn); });
     place(to, 0);
   }
@@ -191,12 +202,15 @@ std::optional<Geometry> ShapeReader::read(const std::string& type, const Paramet
   out.flipped = reversed;
   if (type == "trianglemesh") {
     out.mesh = triangle_mesh(p);
+    count(*out.mesh, p.place());
   } else if (type == "plymesh") {
     out.mesh = ply(p);
   } else if (type == "bilinearmesh") {
     out.mesh = bilinear_mesh(context_, p);
+    count(*out.mesh, p.place());
   } else if (type == "loopsubdiv") {
     out.mesh = loop_subdivision(context_, p);
+    count(*out.mesh, p.place());
   } else if (type == "sphere" || type == "cylinder" || type == "disk" || type == "cone" ||
              type == "paraboloid") {
     const auto made = turned(type, p);
@@ -222,10 +236,6 @@ std::optional<Geometry> ShapeReader::read(const std::string& type, const Paramet
   if (context_.is_v3() && !out.mesh->normals.empty() &&
       (type == "trianglemesh" || type == "plymesh")) {
     out.flipped = false;
-  }
-  triangles_ += out.mesh->triangles.size();
-  if (triangles_ > max_triangles) {
-    fail(p.place(), fmt::format("more than {} triangles in all shapes", max_triangles));
   }
   return out;
 }

@@ -19,7 +19,7 @@ struct Geometry {
 /// Reads `Shape` statements. Equal spheres, disks and cylinders, and equal PLY files share a mesh.
 class ShapeReader {
  public:
-  static constexpr std::size_t max_triangles = std::size_t{1} << 28;  // of all shapes together
+  static constexpr std::size_t max_triangles = std::size_t{1} << 27;  // of all meshes together
 
   explicit ShapeReader(Context& context) : context_(context) {}
 
@@ -35,9 +35,11 @@ class ShapeReader {
   Mesh triangle_mesh(const Parameters& p);
   Mesh ply(const Parameters& p);
   template <class Make>
-  Mesh shared(const std::string& key, Make&& make);
+  Mesh shared(const std::string& key, const Place& place, Make&& make);
 
   Context& context_;
+  void count(const ImportedMesh& mesh, const Place& place);
+
   std::map<std::string, Mesh> meshes_;
   std::size_t triangles_ = 0;
 };

@@ -13,6 +13,7 @@ namespace lacuna::pbrt {
 namespace {
 
 constexpr std::size_t max_made_triangles = std::size_t{1} << 24;  // of one shape
+constexpr double max_of_many_levels = 1 << 16;                    // of more than four subdivisions
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -182,12 +183,21 @@ std::shared_ptr<const ImportedMesh> loop_subdivision(Context& context, const Par
   ImportedMesh in;
   read_vertices(p, in);
   p.ignore({"scheme"});
-  const int levels = p.integer("levels", p.integer("nlevels", 3, 0, 12), 0, 12);
   const auto indices = p.indices("indices", 3, in.positions.size());
-  const double size = static_cast<double>(indices.size() / 3) * std::pow(4.0, levels);
-  if (indices.empty() || size > static_cast<double>(max_made_triangles)) {
-    fail(p.place(), fmt::format("{}: {} triangles after {} levels; allowed: 1 to {}", p.owner(),
-                                size, levels, max_made_triangles));
+  if (indices.empty()) fail(p.place(), fmt::format("{}: \"indices\" is missing", p.owner()));
+  const int stated = p.integer("levels", p.integer("nlevels", 3, 0, 64), 0, 64);
+  // A small file is not to make a large mesh: few levels, or few triangles.
+  const auto size = [&](int levels) {
+    return static_cast<double>(indices.size() / 3) * std::pow(4.0, levels);
+  };
+  int levels = stated;
+  while (levels > 4 && size(levels) > max_of_many_levels) --levels;
+  if (size(levels) > static_cast<double>(max_made_triangles)) {
+    fail(p.place(), fmt::format("{}: {} triangles after {} levels; allowed: up to {}", p.owner(),
+                                size(levels), levels, max_made_triangles));
+  }
+  if (levels < stated) {
+    context.approximated(p.place(), p.owner(), fmt::format("{} of {} levels", levels, stated));
   }
   std::vector<V3d> points(in.positions.begin(), in.positions.end());
   std::vector<Triangle> triangles;

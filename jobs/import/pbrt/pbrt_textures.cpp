@@ -216,7 +216,7 @@ void read_texture(Context& context, const std::string& name, const std::string& 
                               : pattern == "mix"          ? read_mix(source)
                               : pattern == "checkerboard" ? read_checkerboard(source)
                                                           : read_other(source, pattern);
-  Names& names = *context.names;
+  Names& names = context.names;
   (is_float ? names.float_textures : names.spectrum_textures)[name] = value;
   context.note_unused(parameters);
 }
@@ -229,7 +229,7 @@ std::optional<ImportedValue> float_value(const Context& context, const Parameter
   }
   const Parameter* p = parameters.find(name, {"texture"});
   if (p == nullptr) return {};
-  const auto& known = context.names->float_textures;
+  const auto& known = context.names.float_textures;
   const auto found = p->texts.size() == 1 ? known.find(p->texts[0]) : known.end();
   if (found != known.end()) return found->second;
   fail(p->place, fmt::format("{}: \"{}\" names no float texture defined before: \"{}\"",
@@ -243,7 +243,7 @@ std::optional<ImportedValue> colour_value(const Context& context, const Paramete
   }
   const Parameter* p = parameters.find(name, {"texture"});
   if (p == nullptr) return {};
-  const auto& known = context.names->spectrum_textures;
+  const auto& known = context.names.spectrum_textures;
   const auto found = p->texts.size() == 1 ? known.find(p->texts[0]) : known.end();
   if (found != known.end()) return found->second;
   fail(p->place, fmt::format("{}: \"{}\" names no spectrum texture defined before: \"{}\"",

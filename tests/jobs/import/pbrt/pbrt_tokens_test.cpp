@@ -87,6 +87,14 @@ TEST(PbrtTokens, AttributesEndWhereTheyBegan) {
   EXPECT_NE(folder.error(deep).find("nested 256 deep"), std::string::npos);
 }
 
+TEST(PbrtTokens, SeedsOfTheFuzzTargetAreScenes) {
+  for (const char* name : {"v3.pbrt", "v4.pbrt"}) {
+    const auto file =
+        std::filesystem::path(LACUNA_SOURCE_DIR) / "tests/fuzz/corpus/pbrt" / name;
+    EXPECT_GT(import_pbrt(file, MissingFiles::skip).shapes.size(), 2) << name;
+  }
+}
+
 TEST(PbrtParameters, HaveTypes) {
   const PbrtFolder folder;
   pbrt::Tokens tokens(folder.write(
