@@ -172,6 +172,9 @@ std::optional<int> read_depth(Context& context, const RenderOptions& options) {
   if (!options.integrator) return by_default + 1;
   const Parameters& p = options.integrator->parameters;
   const int depth = p.integer("maxdepth", by_default, 0, 1 << 20);
+  if (p.boolean("regularize", false)) {
+    context.left_out(p.place(), p.owner(), "\"regularize\", which widens glossy lobes");
+  }
   for (const Parameter& x : p.all()) x.used = true;  // of a method; the job's is path tracing
   const std::string& type = options.integrator->type;
   if (type == "ao" || type == "ambientocclusion" || type == "whitted" || type == "directlighting" ||

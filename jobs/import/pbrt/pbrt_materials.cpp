@@ -62,6 +62,20 @@ void read_bumps(Context& context, const Parameters& p, ImportedMaterial& materia
   }
 }
 
+/// The lobes of one material of pbrt, which are parts of a mixture here, have its bumps.
+void move_bumps_to_parts(ImportedMaterial& material) {
+  if (material.type != ImportedMaterial::Type::mixture) return;
+  for (auto& part : material.parts) {
+    auto copy = std::make_shared<ImportedMaterial>(*part.material);
+    copy->bump_map = material.bump_map;
+    copy->bump_scale = material.bump_scale;
+    copy->normal_map = material.normal_map;
+    move_bumps_to_parts(*copy);
+    part.material = std::move(copy);
+  }
+  material.bump_map = material.normal_map = nullptr;
+}
+
 }  // namespace
 
 ImportedMaterial mixture_of(const ImportedMaterial& first, const Rgb& weight,
@@ -140,6 +154,7 @@ ImportedMaterial make_material(Context& context, const std::string& type,
     out = std::move(*made);
   }
   read_bumps(context, parameters, out);
+  if (type != "mix") move_bumps_to_parts(out);
   out.name = type;
   out.place = parameters.place().text();
   context.note_unused(parameters);

@@ -177,6 +177,21 @@ TEST(PbrtTextures, BumpAndNormalMapsAndOpacity) {
   EXPECT_EQ(scene.shapes[0].material, scene.shapes[3].material);
 }
 
+/// Plastic is a mixture, whose parts have the bumps.
+TEST(PbrtTextures, BumpMapsOfLobes) {
+  const PbrtFolder folder;
+  folder.write("a.png", "");
+  const auto scene =
+      folder.import(v3_film +
+                    "WorldBegin Texture \"h\" \"float\" \"imagemap\" \"string filename\" "
+                    "\"a.png\" Material \"plastic\" \"texture bumpmap\" \"h\"\n" +
+                    triangle);
+  const auto& m = *scene.shapes[0].material;
+  ASSERT_EQ(m.parts.size(), 2);
+  EXPECT_FALSE(m.bump_map);
+  for (const auto& part : m.parts) EXPECT_TRUE(part.material->bump_map);
+}
+
 /// Of a linear picture r, alpha = sqrt(r) is the picture with a gamma of 1/2.
 TEST(PbrtTextures, OfRoughness) {
   const PbrtFolder folder;
