@@ -1,5 +1,6 @@
 #include "renderer/gltf/gltf_compression.h"
 
+#include "renderer/gltf/gltf_draco.h"
 #include "renderer/gltf/gltf_meshopt.h"
 
 namespace lacuna::gltf {
@@ -25,6 +26,10 @@ bool is_fallback(const GltfObject& buffer) {
 
 void check_compression(const GltfObject& root) {
   check_meshopt(root);
+  if (check_draco(root) > max_decoded_bytes) {
+    root.fail("all meshes of " + std::string(draco_extension) + " decode to more than " +
+              std::to_string(max_decoded_bytes) + " bytes");
+  }
   check_zeros(root);
 }
 

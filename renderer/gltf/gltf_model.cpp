@@ -15,6 +15,7 @@
 
 #include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_compression.h"
+#include "renderer/gltf/gltf_draco.h"
 #include "renderer/gltf/gltf_meshopt.h"
 
 namespace lacuna::gltf {
@@ -24,9 +25,9 @@ namespace {
 /// them.
 using BufferQueue = std::deque<Bytes>;
 
-bool has_fallbacks(const GltfObject& root) {
+bool is_compressed(const GltfObject& root) {
   const auto buffers = root.objects("buffers");
-  return std::any_of(buffers.begin(), buffers.end(), is_fallback);
+  return std::any_of(buffers.begin(), buffers.end(), is_fallback) || has_draco(root);
 }
 
 Bytes read_external(const GltfObject& buffer, const std::string& uri, std::uint64_t needed,
@@ -44,7 +45,7 @@ Bytes read_external(const GltfObject& buffer, const std::string& uri, std::uint6
 BufferQueue read_buffers(const Framing& framing, const GltfObject& root, SceneFolder& folder,
                          Hasher& content) {
   BufferQueue queue;
-  const bool bin_is_a_file = has_fallbacks(root);
+  const bool bin_is_a_file = is_compressed(root);
   for (const GltfObject& buffer : root.objects("buffers")) {
     const std::uint64_t needed = buffer.integer("byteLength", 1, ~std::uint32_t{0});
     if (is_fallback(buffer)) {
@@ -62,14 +63,24 @@ BufferQueue read_buffers(const Framing& framing, const GltfObject& root, SceneFo
   return queue;
 }
 
-/// The JSON of a file with fallback buffers, which tinygltf refuses: they and the BIN chunk get the
-/// uri of a file.
-std::string json_without_fallbacks(const Framing& framing, const GltfObject& root) {
+/// The JSON of a compressed file without what tinygltf refuses: buffers without data, which get the
+/// uri of a file, as does the BIN chunk, and indices without data.
+std::string json_of_compressed(const Framing& framing, const GltfObject& root) {
   Json json = parse_json(framing.json);
   std::size_t i = 0;
   for (const GltfObject& buffer : root.objects("buffers")) {
     Json& named = json["buffers"][i++];
     if (is_fallback(buffer) || !buffer.has("uri")) named["uri"] = "queued";
+  }
+  const auto accessors = root.objects("accessors");
+  std::size_t m = 0;
+  for (const GltfObject& mesh : root.objects("meshes")) {
+    Json& primitives = json["meshes"][m++]["primitives"];
+    std::size_t p = 0;
+    for (const GltfObject& primitive : mesh.objects("primitives")) {
+      if (is_draco(primitive, accessors)) primitives[p].erase("indices");
+      ++p;
+    }
   }
   return json.dump();
 }
@@ -111,7 +122,7 @@ tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& f
                             const GltfObject& root, SceneFolder& folder, Hasher& content) {
   BufferQueue queue = read_buffers(framing, root, folder, content);
   std::string text;
-  if (has_fallbacks(root)) text = json_without_fallbacks(framing, root);
+  if (is_compressed(root)) text = json_of_compressed(framing, root);
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(callbacks(queue));
   parser.SetImageLoader(keep_encoded, nullptr);
@@ -229,6 +240,7 @@ file::Model read_model(std::span<const std::uint8_t> file, const Framing& framin
                        const GltfObject& root, SceneFolder& folder, Hasher& content) {
   file::Model model = translated(parse_model(file, framing, root, folder, content));
   decode_meshopt(root, model);
+  decode_draco(root, model);
   return model;
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "renderer/gltf/gltf_compression.h"
+#include "renderer/gltf/gltf_draco.h"
 #include "renderer/gltf/gltf_features.h"
 #include "renderer/gltf/gltf_guard.h"
 
@@ -205,6 +206,7 @@ void check_attributes(const GltfObject& attributes, const Sizes& sizes) {
 
 /// An accessor without a bufferView means zeros; tinygltf does not accept that for indices.
 void check_data(const GltfObject& primitive, const std::vector<GltfObject>& accessors) {
+  if (is_draco(primitive, accessors)) return;
   const auto lacks_data = [&](const std::optional<std::size_t>& accessor) {
     return accessor && !accessors[*accessor].has("bufferView");
   };
