@@ -28,7 +28,7 @@ using ZipFile = std::unique_ptr<zip_file_t, decltype(&zip_fclose)>;
 constexpr std::size_t longest_name = 255;  // of a file or folder, bytes
 constexpr std::ptrdiff_t deepest = 8;      // folders around a file
 
-struct Entry {
+struct ArchiveFile {
   std::uint64_t index;
   std::string name;
   std::uint64_t bytes;
@@ -76,12 +76,12 @@ bool is_regular(zip_t* zip, std::uint64_t index) {
 }
 
 /// The files of the archive. Names that end with '/' are folders, which files create.
-std::vector<Entry> entries_of(zip_t* zip, std::uint64_t max_bytes) {
+std::vector<ArchiveFile> entries_of(zip_t* zip, std::uint64_t max_bytes) {
   const zip_int64_t count = zip_get_num_entries(zip, 0);
   if (count > max_archived_files) {
     throw BadArchive(fmt::format("it has {} entries; at most {}", count, max_archived_files));
   }
-  std::vector<Entry> entries;
+  std::vector<ArchiveFile> entries;
   std::uint64_t bytes = 0;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(count); ++i) {
     zip_stat_t stat;
@@ -105,9 +105,9 @@ std::vector<Entry> entries_of(zip_t* zip, std::uint64_t max_bytes) {
 }
 
 /// The folder in the archive that has the scene: "" or "NAME/".
-std::string top_of(const std::vector<Entry>& entries) {
+std::string top_of(const std::vector<ArchiveFile>& entries) {
   std::string top;
-  for (const Entry& e : entries) {
+  for (const ArchiveFile& e : entries) {
     if (e.name == archived_scene) return "";
     const std::size_t slash = e.name.find('/');
     if (slash != std::string::npos && e.name.substr(slash + 1) == archived_scene) {
@@ -118,7 +118,7 @@ std::string top_of(const std::vector<Entry>& entries) {
   throw BadArchive(fmt::format("it has no {} at its top, nor in one folder there", archived_scene));
 }
 
-void unpack(zip_t* zip, const Entry& entry, const fs::path& file) {
+void unpack(zip_t* zip, const ArchiveFile& entry, const fs::path& file) {
   const ZipFile from(zip_fopen_index(zip, entry.index, 0), &zip_fclose);
   if (!from) throw BadArchive(fmt::format("\"{}\": {}", entry.name, zip_strerror(zip)));
   fs::create_directories(file.parent_path());
@@ -149,9 +149,9 @@ void unpack(zip_t* zip, const Entry& entry, const fs::path& file) {
 
 void unpack_scene(const fs::path& archive, const fs::path& folder, std::uint64_t max_bytes) {
   const Zip zip = open_archive(archive);
-  const std::vector<Entry> entries = entries_of(zip.get(), max_bytes);
+  const std::vector<ArchiveFile> entries = entries_of(zip.get(), max_bytes);
   const std::string top = top_of(entries);
-  for (const Entry& e : entries) {
+  for (const ArchiveFile& e : entries) {
     if (!e.name.starts_with(top)) {
       throw BadArchive(
           fmt::format("\"{}\" lies beside the folder \"{}\" of the scene", e.name, top));
@@ -159,7 +159,7 @@ void unpack_scene(const fs::path& archive, const fs::path& folder, std::uint64_t
   }
   fs::create_directory(folder);
   try {
-    for (const Entry& e : entries) unpack(zip.get(), e, folder / e.name.substr(top.size()));
+    for (const ArchiveFile& e : entries) unpack(zip.get(), e, folder / e.name.substr(top.size()));
   } catch (const fs::filesystem_error& error) {
     // Another entry is a file where this one has a folder.
     if (error.code() != std::errc::not_a_directory && error.code() != std::errc::file_exists) throw;
