@@ -14,7 +14,6 @@ namespace lacuna {
 namespace {
 
 namespace fs = std::filesystem;
-using Outcome = SceneUploads::Outcome;
 
 struct Member {
   std::string name, content;
@@ -123,15 +122,15 @@ TEST_F(SceneArchive, AnUploadedFolderGetsItsNameOnceAndIsNeverReplaced) {
   const Member job{"job.json", "{}"};
   const Member good{"scene.glb", content_of_scene("cornell.glb")};
   const Member bad{"scene.glb", "glTF and no more"};
-  EXPECT_EQ(put({bad, job}).outcome, Outcome::refused);
+  EXPECT_EQ(put({bad, job}).outcome, SceneUploads::Outcome::refused);
   EXPECT_EQ(names_in(folder), std::set<std::string>{".uploads"});
   const SceneUploads::Result first = put({good, job});
-  EXPECT_EQ(first.outcome, Outcome::created) << first.reason;
+  EXPECT_EQ(first.outcome, SceneUploads::Outcome::created) << first.reason;
   EXPECT_EQ(first.scene, "room/scene.glb");
   EXPECT_EQ(names_in(folder / "room"), (std::set<std::string>{"scene.glb", "job.json"}));
-  EXPECT_EQ(put({good, job}).outcome, Outcome::same);
-  EXPECT_EQ(put({good}).outcome, Outcome::conflict);
-  EXPECT_EQ(put({good, {"job.json", "[]"}}).outcome, Outcome::conflict);
+  EXPECT_EQ(put({good, job}).outcome, SceneUploads::Outcome::same);
+  EXPECT_EQ(put({good}).outcome, SceneUploads::Outcome::conflict);
+  EXPECT_EQ(put({good, {"job.json", "[]"}}).outcome, SceneUploads::Outcome::conflict);
   EXPECT_EQ(names_in(folder), (std::set<std::string>{".uploads", "room"}));
 }
 

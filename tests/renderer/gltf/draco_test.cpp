@@ -97,7 +97,7 @@ GlbBuilder file_of(const test::Bytes& data) {
   return b;
 }
 
-std::string refusal(const GlbBuilder& b) {
+std::string draco_refusal(const GlbBuilder& b) {
   try {
     load(b);
   } catch (const SceneError& e) {
@@ -110,7 +110,7 @@ std::string refusal(const GlbBuilder& b) {
 std::string refusal_of(const std::function<void(GlbBuilder&)>& change, int speed = 0) {
   GlbBuilder b = file_of(encoded(Sheet(), speed));
   change(b);
-  return refusal(b);
+  return draco_refusal(b);
 }
 
 Json& draco_of(GlbBuilder& b) {
@@ -152,12 +152,12 @@ TEST_P(DracoMethods, VerticesAndTrianglesComeBackWithinTheirQuantization) {
 TEST_P(DracoMethods, DamagedDataAreRefusedOrStayInTheirBounds) {
   const test::Bytes whole = encoded(Sheet(), GetParam());
   for (std::size_t cut = 1; cut < whole.size(); cut += 5) {
-    EXPECT_NE(refusal(file_of({whole.begin(), whole.begin() + long(cut)})), "") << cut;
+    EXPECT_NE(draco_refusal(file_of({whole.begin(), whole.begin() + long(cut)})), "") << cut;
   }
   for (std::size_t at = 0; at < whole.size(); at += 3) {
     test::Bytes other = whole;
     other[at] ^= 0x55;
-    refusal(file_of(other));  // it may load: then its indices were in range
+    draco_refusal(file_of(other));  // it may load: then its indices were in range
   }
 }
 
@@ -191,7 +191,7 @@ TEST(Draco, OnlyVersion2Point2WithoutMetadataIsRead) {
   const auto with = [&](std::size_t at, std::uint8_t value) {
     test::Bytes other = whole;
     other[at] = value;
-    return refusal(file_of(other));
+    return draco_refusal(file_of(other));
   };
   EXPECT_NE(with(0, 'd').find("header of Draco"), std::string::npos);
   EXPECT_NE(with(6, 1).find("version 2.1"), std::string::npos);
