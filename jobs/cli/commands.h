@@ -18,6 +18,7 @@ void add_render(CLI::App& app, int& code);
 void add_extend(CLI::App& app, int& code);
 void add_merge(CLI::App& app, int& code);
 void add_check(CLI::App& app, int& code);
+void add_import(CLI::App& app, int& code);
 void add_schema(CLI::App& app, int& code);
 void add_list(CLI::App& app, int& code);
 void add_compare(CLI::App& app, int& code);

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   lacuna::add_extend(app, code);
   lacuna::add_merge(app, code);
   lacuna::add_check(app, code);
+  lacuna::add_import(app, code);
   lacuna::add_schema(app, code);
   lacuna::add_list(app, code);
   lacuna::add_compare(app, code);

@@ -18,6 +18,7 @@ struct ImportedTexture {
   std::filesystem::path file;  ///< empty: a checkerboard of `odd` and `even`
   bool srgb = true;            ///< the file's values are encoded by sRGB's curve
   double gamma = 1;            ///< if not srgb: linear = value^gamma
+  std::optional<int> channel;  ///< only this one: 0 to 3 are red, green, blue, alpha
   std::array<Wrap, 2> wrap{Wrap::repeat, Wrap::repeat};  ///< u, v
   bool nearest = false;
   bool inverted = false;  ///< 1 - value, after decoding
@@ -59,6 +60,7 @@ struct ImportedMaterial {
   Type type = Type::diffuse;
   bool one_sided = false;  ///< the back is black
   ImportedValue diffuse{{0.5F, 0.5F, 0.5F}, nullptr};
+  bool vertex_colors = false;  ///< the colours of its meshes are meant; else they have none
   double sigma = 0;  ///< of Oren-Nayar's facets, radians
 
   bool beckmann = false;

@@ -6,8 +6,6 @@
 namespace lacuna {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// The factor of a regular polygon's radius that gives it the area of the circle of radius 1.
 double equal_area_radius(double angle) { return std::sqrt(angle / std::sin(angle)); }
 
@@ -32,8 +30,8 @@ ImportedMesh revolution_mesh(const std::string& name, const std::vector<ProfileP
                              double phi_max) {
   ImportedMesh mesh;
   mesh.name = name;
-  const int segments =
-      std::max(3, static_cast<int>(std::ceil(turn_segments * phi_max / (2 * pi) - 1e-9)));
+  const int segments = std::max(
+      3, static_cast<int>(std::ceil(turn_segments * phi_max / (2 * std::numbers::pi) - 1e-9)));
   const double step = phi_max / segments, widen = equal_area_radius(step);
   const auto add = [&](const ProfilePoint& p, double at) {
     const double phi = step * at, c = std::cos(phi), s = std::sin(phi), r = p.radius * widen;
@@ -62,8 +60,8 @@ ImportedMesh revolution_mesh(const std::string& name, const std::vector<ProfileP
 ImportedMesh sphere_mesh(double z_min, double z_max, double phi_max) {
   const double from = std::acos(std::clamp(z_min, -1.0, 1.0)),
                to = std::acos(std::clamp(z_max, -1.0, 1.0));
-  const int rows =
-      std::max(2, static_cast<int>(std::ceil(turn_segments * (from - to) / pi - 1e-9)));
+  const int rows = std::max(
+      2, static_cast<int>(std::ceil(turn_segments * (from - to) / std::numbers::pi - 1e-9)));
   std::vector<ProfilePoint> profile;
   for (int j = 0; j <= rows; ++j) {
     const double v = static_cast<double>(j) / rows, theta = from + (to - from) * v;
@@ -72,9 +70,9 @@ ImportedMesh sphere_mesh(double z_min, double z_max, double phi_max) {
     profile.push_back({r, z, r, z, v});
   }
   ImportedMesh mesh = revolution_mesh("sphere", profile, phi_max);
-  const bool whole = z_min <= -1 && z_max >= 1 && phi_max >= 2 * pi;
+  const bool whole = z_min <= -1 && z_max >= 1 && phi_max >= 2 * std::numbers::pi;
   if (whole) {
-    const double scale = std::sqrt(4 * pi / area_of(mesh));
+    const double scale = std::sqrt(4 * std::numbers::pi / area_of(mesh));
     for (V3f& p : mesh.positions) p *= static_cast<float>(scale);
   }
   return mesh;

@@ -73,9 +73,10 @@ class ImageCodec {
   virtual StoredTexels decode(ImageFormat format, std::span<const std::uint8_t> bytes) const = 0;
   /// Scan lines in ZIP compression; equal contents give equal bytes.
   virtual EncodedImage encode_exr(const ExrContent& content) const = 0;
-  /// `rgb`: sRGB codes, interleaved, top row first, 3 x width x height.
+  /// `values`: codes, interleaved, top row first: 3 x width x height of RGB, or 4 x width x height
+  /// of RGBA, alpha not multiplied in.
   virtual EncodedImage encode_png(int width, int height,
-                                  std::span<const std::uint8_t> rgb) const = 0;
+                                  std::span<const std::uint8_t> values) const = 0;
 };
 
 /// The name and type of the module's exported function: it returns the codec, which is never

@@ -6,8 +6,9 @@
 
 namespace lacuna {
 
-/// Encodes sRGB codes as a PNG: `rgb` is interleaved, top row first, 3 x width x height. Equal
-/// pictures give equal bytes. Throws std::runtime_error.
-std::string encode_png(int width, int height, std::span<const std::uint8_t> rgb);
+/// Encodes a PNG: `values` are codes of 8 bits, interleaved, top row first, 3 x width x height
+/// (RGB) or 4 x width x height (RGBA, alpha not multiplied in). Equal pictures give equal bytes.
+/// Throws std::runtime_error.
+std::string encode_png(int width, int height, std::span<const std::uint8_t> values);
 
 }  // namespace lacuna

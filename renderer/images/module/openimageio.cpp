@@ -211,10 +211,14 @@ class OpenImageIoCodec final : public ImageCodec {
                   content.rows);
   }
 
-  EncodedImage encode_png(int width, int height, std::span<const std::uint8_t> rgb) const override {
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
+  EncodedImage encode_png(int width, int height,
+                          std::span<const std::uint8_t> values) const override {
+    const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    const bool alpha = values.size() == 4 * pixels;
+    OIIO::ImageSpec spec(width, height, alpha ? 4 : 3, OIIO::TypeUInt8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    return encode("png", spec, height, [&](const RowBlock&) { return rgb.data(); });
+    if (alpha) spec.attribute("oiio:UnassociatedAlpha", 1);
+    return encode("png", spec, height, [&](const RowBlock&) { return values.data(); });
   }
 
  private:

@@ -1,0 +1,120 @@
+#include "jobs/import/mitsuba/emitters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lacuna::mitsuba {
+namespace {
+
+Rgb strength_of(const Parameters& p, std::string_view name) {
+  const auto color = p.color(name);
+  if (!color && p.has(name)) {
+    p.element().fail(
+        fmt::format("has {} that is no colour; allowed: rgb, spectrum, blackbody", name));
+  }
+  return color.value_or(Rgb(1));
+}
+
+V3d direction_in(const M44d& m, const V3d& v) {
+  V3d out;
+  m.multDirMatrix(v, out);
+  return out.normalized();
+}
+
+/// Along local +z.
+void place_light(const Parameters& p, ImportedLight& light) {
+  const M44d m = p.transform("toworld");
+  light.position = {m[3][0], m[3][1], m[3][2]};
+  if (const auto position = p.vector("position")) light.position = *position;
+  light.direction = direction_in(m, {0, 0, 1});
+  if (const auto direction = p.vector("direction")) light.direction = direction->normalized();
+  if (!(light.direction.length() > 0)) p.element().fail("has a direction of length 0");
+}
+
+void add_light(ReadContext& context, const Parameters& p, ImportedScene& scene) {
+  const std::string& type = p.element().type();
+  ImportedLight light;
+  light.name = p.element().attribute("id");
+  place_light(p, light);
+  if (type == "directional") {
+    light.kind = ImportedLight::Kind::directional;
+    light.intensity = strength_of(p, "irradiance");
+  } else {
+    light.intensity = strength_of(p, "intensity");
+  }
+  if (type == "spot") {
+    light.kind = ImportedLight::Kind::spot;
+    const double cutoff = p.number("cutoffangle", 20);
+    const double beam = p.number("beamwidth", cutoff * 3 / 4);
+    if (!(cutoff > 0 && cutoff <= 90 && beam >= 0 && beam <= cutoff)) {
+      p.element().fail("allowed: a cutoffAngle above 0, at most 90, and a beamWidth up to that");
+    }
+    light.inner_cone = beam * degree;
+    light.outer_cone = cutoff * degree;
+    if (beam < cutoff) {
+      context.note(p.element(), "approximated",
+                   "between its cones light falls off as glTF says, where Mitsuba's falls off "
+                   "linearly with the angle");
+    }
+  }
+  scene.lights.push_back(light);
+}
+
+void add_environment(ReadContext& context, const Parameters& p, ImportedScene& scene) {
+  if (scene.environment) p.element().fail("is the second environment; allowed: one");
+  ImportedEnvironment e;
+  e.place = p.element().place;
+  if (p.element().type() == "constant") {
+    e.scale = strength_of(p, "radiance");
+    scene.environment = e;
+    return;
+  }
+  const std::string name = p.text("filename", "");
+  const auto file = context.file(p.element(), name);
+  e.scale = Rgb(static_cast<float>(p.number("scale", 1)));
+  if (p.number("gamma", -1) > 0) {
+    context.note(p.element(), "left out", "its gamma: a file of floats is linear, others sRGB");
+  }
+  // Local: the picture's centre is +z, up +y, its left +x. M44d's rows: centre, left, up.
+  const M44d picture(0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+  e.to_world = picture * p.transform("toworld");
+  p.ignore({"cache"});
+  if (!file) {
+    context.note(p.element(), "left out", fmt::format("{} is missing", name));
+    return;
+  }
+  e.file = *file;
+  scene.environment = e;
+}
+
+}  // namespace
+
+void add_emitter(ReadContext& context, MissingFiles missing, const SceneElement& element,
+                 ImportedScene& scene) {
+  const Parameters p = context.parameters(element);
+  const std::string& type = element.type();
+  if (type == "point" || type == "spot" || type == "directional") {
+    add_light(context, p, scene);
+  } else if (type == "constant" || type == "envmap") {
+    add_environment(context, p, scene);
+  } else if (type == "sky" || type == "sun" || type == "sunsky") {
+    if (missing == MissingFiles::refuse) {
+      element.fail(
+          "is a model of the sky, which is not read: render it to a picture and make it an "
+          "envmap, or leave it out with --missing skip");
+    }
+    context.note(element, "left out", "models of the sky are not read");
+    p.ignore_all();
+  } else {
+    element.fail(
+        "is an emitter that is not read; allowed: area (in a shape), point, spot, directional, "
+        "constant, envmap");
+  }
+  p.ignore({"samplingweight"});
+  p.note_unread(context.notes);
+}
+
+}  // namespace lacuna::mitsuba

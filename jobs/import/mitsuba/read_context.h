@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "jobs/import/imported_scene.h"
+#include "jobs/import/mitsuba/parameters.h"
+
+namespace lacuna::mitsuba {
+
+/// What all parts of the reading share.
+struct ReadContext {
+  const std::filesystem::path& folder;  ///< of the scene; empty: none
+  const SceneIds& ids;
+  std::vector<ImportNote>& notes;
+  std::vector<std::string> missing_files;  ///< place and name of each
+
+  Parameters parameters(const SceneElement& element) const { return {element, ids}; }
+  void note(const SceneElement& at, std::string treatment, std::string how) const {
+    notes.push_back({at.place, at.label(), std::move(treatment), std::move(how)});
+  }
+  /// A file that `at` names; none, and an entry in missing_files, if there is no such file. Throws
+  /// SceneError for a name outside of the folder.
+  std::optional<std::filesystem::path> file(const SceneElement& at, const std::string& name);
+};
+
+}  // namespace lacuna::mitsuba

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "jobs/import/mitsuba/materials.h"
+#include "jobs/import/mitsuba/read_context.h"
+
+namespace lacuna::mitsuba {
+
+/// Reads shapes.
+class Shapes {
+ public:
+  Shapes(ReadContext& context, Textures& textures, Materials& materials, ImportedScene& scene)
+      : context_(context), textures_(textures), materials_(materials), scene_(scene) {}
+
+  /// Adds a shape, or the shapes of a group under an instance, to the scene.
+  void add(const SceneElement& shape, const M44d& to_parent = {});
+
+ private:
+  using MeshPointer = std::shared_ptr<const ImportedMesh>;
+  struct Read {
+    MeshPointer mesh;
+    M44d placing;          ///< before the shape's toWorld
+    bool flipped = false;  ///< the front is where the mesh's triangles are clockwise
+  };
+
+  void add_group(const SceneElement& group, const M44d& to_parent);
+  void add_instance(const Parameters& p, const M44d& to_parent);
+  Read read(const Parameters& p);
+  Read read_sphere(const Parameters& p);
+  Read read_cylinder(const Parameters& p);
+  MeshPointer load(const Parameters& p, const std::string& kind);
+  MeshPointer unit_mesh(const std::string& type);
+  std::shared_ptr<const ImportedMaterial> material_of(const Parameters& p, bool emits);
+  std::shared_ptr<const ImportedMaterial> with_interior(
+      const Parameters& p, const std::shared_ptr<const ImportedMaterial>& material);
+  void note_rounded(const Parameters& p, const std::string& type);
+
+  ReadContext& context_;
+  Textures& textures_;
+  Materials& materials_;
+  ImportedScene& scene_;
+  std::map<std::string, MeshPointer> units_;
+  std::map<std::string, MeshPointer> files_;          // by everything that the mesh depends on
+  std::map<const ImportedMesh*, MeshPointer> plain_;  // without their colours
+  std::map<std::pair<const ImportedMaterial*, const SceneElement*>,
+           std::shared_ptr<const ImportedMaterial>>
+      filled_;
+  std::set<std::string> noted_;
+  std::vector<const SceneElement*> open_;
+};
+
+}  // namespace lacuna::mitsuba

@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "jobs/import/mitsuba/read_mitsuba.h"
+#include "jobs/import/scene_write.h"
+#include "jobs/spec/job_json.h"
+#include "renderer/core/scene_error.h"
+#include "renderer/gltf/gltf_load.h"
+#include "tests/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+const std::string small_scene = R"(<?xml version="1.0"?>
+<scene version="3.0.0">
+  <default name="size" value="64"/>
+  <default name="sizes" value="32"/>
+  <integrator type="path"><integer name="max_depth" value="5"/></integrator>
+  <sensor type="perspective" id="eye">
+    <float name="fov" value="60"/>
+    <transform name="to_world"><lookat origin="0,1,5" target="0,1,0" up="0,1,0"/></transform>
+    <film type="hdrfilm">
+      <integer name="width" value="$size"/><integer name="height" value="$sizes"/>
+      <rfilter type="box"/>
+    </film>
+  </sensor>
+  <bsdf type="twosided" id="white"><bsdf type="diffuse">
+    <rgb name="reflectance" value=".25, .5 .75"/></bsdf></bsdf>
+  <alias id="white" as="paint"/>
+  <shape type="rectangle" id="floor"><ref id="paint"/>
+    <transform name="to_world"><scale value="2"/><rotate x="1" angle="-90"/></transform></shape>
+  <shape type="sphere" id="lamp"><float name="radius" value=".5"/>
+    <point name="center" x="0" y="2" z="0"/>
+    <emitter type="area"><rgb name="radiance" value="4 2 1"/></emitter></shape>
+  <shape type="sphere"><ref id="white"/><point name="center" value="1, 1, 0"/></shape>
+  <emitter type="point"><point name="position" x="0" y="3" z="0"/>
+    <rgb name="intensity" value="10, 20, 5"/></emitter>
+</scene>)";
+
+struct Written {
+  TemporaryFolder folder;
+  std::vector<ImportNote> notes;
+  SceneData scene;
+  JobSpec job;
+
+  explicit Written(const ImportedScene& imported)
+      : notes(write_imported_scene(imported, folder / "small")),
+        scene(load_gltf(folder / "small/scene.glb")),
+        job(parse_job(content_of(folder / "small/job.json"))) {}
+};
+
+const Mesh& mesh_called(const SceneData& scene, const std::string& name) {
+  for (const Mesh& mesh : scene.meshes) {
+    if (mesh.name.find(name) != std::string::npos) return mesh;
+  }
+  ADD_FAILURE() << name;
+  return scene.meshes[0];
+}
+
+TEST(MitsubaScene, BecomesAGlbAndAJob) {
+  const Written written(read_mitsuba_text(small_scene));
+  EXPECT_TRUE(written.scene.warnings.empty());
+  ASSERT_EQ(written.scene.meshes.size(), 3U);
+  const Mesh& floor = mesh_called(written.scene, "floor");
+  const Material& paint = written.scene.materials[floor.material];
+  EXPECT_EQ(paint.base_color, Rgb(.25F, .5F, .75F));
+  EXPECT_EQ(paint.specular, 0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(floor.positions[i].y, 0, 1e-6);
+    EXPECT_NEAR(std::abs(floor.positions[i].x), 2, 1e-6);
+    EXPECT_NEAR(floor.normals[i].y, 1, 1e-6);
+  }
+  const Material& light = written.scene.materials[mesh_called(written.scene, "lamp").material];
+  EXPECT_EQ(light.emission, Rgb(4, 2, 1));
+  EXPECT_EQ(light.base_color, Rgb(0, 0, 0));
+  EXPECT_FALSE(light.double_sided);
+  ASSERT_EQ(written.scene.lights.size(), 1U);
+  EXPECT_EQ(written.scene.lights[0].intensity, Rgb(10, 20, 5));
+  EXPECT_EQ(written.scene.lights[0].position, V3f(0, 3, 0));
+}
+
+TEST(MitsubaScene, JobHasCameraPictureAndDepth) {
+  const Written written(read_mitsuba_text(small_scene));
+  EXPECT_EQ(written.job.scene, "small/scene.glb");
+  EXPECT_EQ(written.job.resolution, (std::array<int, 2>{64, 32}));
+  EXPECT_EQ(written.job.light_units, LightUnits::radiometric);
+  EXPECT_FALSE(written.job.environment);
+  ASSERT_EQ(written.scene.cameras.size(), 1U);
+  const CameraData& camera = written.scene.cameras[0];
+  EXPECT_EQ(camera.name, "eye");
+  // fov 60 along x, 64 x 32 pixels.
+  EXPECT_NEAR(camera.yfov, 2 * std::atan(std::tan(std::numbers::pi / 6) / 2), 1e-6);
+  // Looks along -z of the world: x to the right, y up.
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(camera.to_world[i][k], i == k ? 1 : 0, 1e-6);
+  }
+  EXPECT_NEAR(camera.to_world[3][2], 5, 1e-6);
+}
+
+TEST(MitsubaScene, ShapesOfOneMeshShareIt) {
+  const ImportedScene imported = read_mitsuba_text(small_scene);
+  ASSERT_EQ(imported.shapes.size(), 3U);
+  EXPECT_EQ(imported.shapes[1].mesh, imported.shapes[2].mesh);
+  const TemporaryFolder folder;
+  write_imported_scene(imported, folder / "a");
+  const std::string glb = content_of(folder / "a/scene.glb");
+  EXPECT_LT(glb.size(),
+            2 * (sizeof(V3f) * 2 + sizeof(V2f)) * imported.shapes[1].mesh->positions.size());
+}
+
+TEST(MitsubaScene, InstancesPlaceTheShapesOfAGroup) {
+  const ImportedScene imported = read_mitsuba_text(R"(<scene version="0.6.0">
+    <sensor type="orthographic"/>
+    <shape type="shapegroup" id="pair">
+      <shape type="cube"><transform name="toWorld"><scale value="2"/></transform></shape>
+      <shape type="rectangle"/>
+    </shape>
+    <shape type="instance"><ref id="pair"/>
+      <transform name="toWorld"><translate x="5"/></transform></shape>
+    <shape type="instance"><ref id="pair"/>
+      <transform name="toWorld"><rotate y="1" angle="90"/></transform></shape>
+  </scene>)");
+  ASSERT_EQ(imported.shapes.size(), 4U);
+  EXPECT_EQ(V3d(1, 1, 1) * imported.shapes[0].to_world, V3d(7, 2, 2));
+  EXPECT_EQ(imported.shapes[1].mesh, imported.shapes[3].mesh);
+  const V3d turned = V3d(1, 0, 0) * imported.shapes[3].to_world;
+  EXPECT_NEAR(turned.z, -1, 1e-12);
+}
+
+std::string refusal_of_scene(const std::string& inner) {
+  return message_of<SceneError>(
+      [&] { read_mitsuba_text("<scene version='0.6.0'>\n" + inner + "\n</scene>"); });
+}
+
+TEST(MitsubaScene, RefusesByPlaceAndName) {
+  EXPECT_EQ(refusal_of_scene("<shape type='hair' id='h'/>").substr(0, 44),
+            "scene.xml:2: shape \"h\" (hair) is a shape tha");
+  EXPECT_TRUE(contains(refusal_of_scene("<emitter type='sky'/>"), "--missing skip"));
+  EXPECT_TRUE(contains(refusal_of_scene("<shape type='cube'><ref id='x'/></shape>"),
+                       "names \"x\", which no element has as its id"));
+  EXPECT_TRUE(contains(refusal_of_scene("<bsdf type='diffuse' id='a'/><bsdf type='diffuse' "
+                                        "id='a'/>"),
+                       "has an id that another element has"));
+  EXPECT_TRUE(contains(refusal_of_scene("<shape type='sphere'><float name='radius' "
+                                        "value='$r'/></shape>"),
+                       "no <default> says what \"$r\" is"));
+  EXPECT_TRUE(contains(refusal_of_scene("<shape type='sphere'><float name='radius' "
+                                        "value='x1'/></shape>"),
+                       "has \"x1\"; allowed: a number"));
+  EXPECT_TRUE(contains(refusal_of_scene("<shape type='sphere'><bsdf type='hk'/></shape>"),
+                       "is a BSDF that is not read"));
+  EXPECT_TRUE(contains(refusal_of_scene("<soup/>"), "is no element that is read"));
+  EXPECT_TRUE(contains(refusal_of_scene("<shape type='obj'><string name='filename' "
+                                        "value='a.obj'/></shape>"),
+                       "names a file"));
+}
+
+TEST(MitsubaScene, NotesParametersThatItDoesNotRead) {
+  const ImportedScene scene = read_mitsuba_text(R"(<scene version="0.6.0">
+    <sensor type="orthographic"/>
+    <shape type="cube"><bsdf type="diffuse"><float name="shine" value="1"/></bsdf></shape>
+    <shape type="cube"><bsdf type="diffuse"><float name="shine" value="1"/></bsdf></shape>
+  </scene>)");
+  ASSERT_EQ(scene.notes.size(), 1U);
+  EXPECT_EQ(scene.notes[0].place, "scene.xml:3");
+  EXPECT_EQ(scene.notes[0].treatment, "left out");
+  EXPECT_EQ(scene.notes[0].how, "its float \"shine\" is not read (and 1 more of its kind)");
+}
+
+}  // namespace
+}  // namespace lacuna
