@@ -44,6 +44,8 @@ TARGETS = (
     Target("float_image", 4096, 1024, max_malloc_mb=20000),
     Target("texture", 4096, 1024),
     Target("pbrt", 4096, 1024),
+    Target("mitsuba", 4096, 1024),
+    Target("mesh_file", 4096, 1024),
 )
 SECONDS_PER_INPUT = 60  # against hangs only: the machine may be busy
 

@@ -6,6 +6,7 @@ import json
 import pathlib
 import struct
 import subprocess
+import zlib
 
 CORPUS = pathlib.Path(__file__).resolve().parent / "corpus"
 PATTERN = "fill:topleft=.1,.2,.3,1:topright=1,0,0,.5:bottomleft=0,1,0,1:bottomright=2,3,.5,0"
@@ -242,9 +243,30 @@ def scenes():
     (CORPUS / "glb/everything.gltf").write_text(json.dumps(content, separators=(",", ":")))
 
 
+def mesh_files():
+    """A binary PLY of either byte order, and meshes of Mitsuba's own format with all that they can hold."""
+    header = ("ply\nformat binary_{}_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+              "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n"
+              "property list uchar int vertex_indices\nend_header\n")
+    folder = CORPUS / "mesh_file"
+    for order, name in (("<", "little"), (">", "big")):
+        vertices = b"".join(struct.pack(f"{order}3f3B", x, y, 0, 255, 128, 0) for x, y in ((0, 0), (1, 0), (0, 1)))
+        (folder / f"{name}.ply").write_bytes(
+            header.format(name).encode() + vertices + struct.pack(f"{order}B3i", 3, 0, 1, 2))
+    for version, flags, real in ((3, 0x1001, "f"), (4, 0x200B, "d")):
+        name = b"mesh\0" if version == 4 else b""
+        values = 3 * (3 + 3 * (flags & 1) + (flags & 2) + 3 * ((flags & 8) > 0))
+        body = struct.pack("<I", flags) + name + struct.pack("<QQ", 3, 1)
+        body += struct.pack(f"<{values}{real}", *(i / 8 for i in range(values))) + struct.pack("<3I", 0, 1, 2)
+        offsets = struct.pack("<QI" if version == 4 else "<II", 0, 1)
+        (folder / f"v{version}.serialized").write_bytes(
+            struct.pack("<HH", 0x041C, version) + zlib.compress(body) + offsets)
+
+
 float_images()
 textures()
 webps()
 scenes()
 posed()
 featured()
+mesh_files()

@@ -1,0 +1,35 @@
+#include <string>
+
+#include "jobs/import/mitsuba/mesh_files.h"
+#include "jobs/import/ply_mesh.h"
+#include "renderer/core/scene_error.h"
+#include "tests/fuzz/imported_scene.h"
+
+// A file as a mesh, by its first byte: PLY, one of Mitsuba's own (0x1C), else OBJ. Refused, or a
+// sound mesh.
+
+namespace {
+
+lacuna::ImportedMesh mesh_of(std::span<const std::uint8_t> bytes) {
+  using namespace lacuna;
+  const std::uint8_t first = bytes.empty() ? 0 : bytes[0];
+  if (first == 'p') return ply_mesh(bytes, "mesh.ply");
+  if (first == 0x1C) return mitsuba::serialized_mesh(bytes, 0, "mesh.serialized");
+  return mitsuba::obj_mesh({bytes.begin(), bytes.end()}, "mesh.obj");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace lacuna;
+  try {
+    ImportedMesh mesh = mesh_of({data, size});
+    fuzz::expect_sound(mesh);
+    mitsuba::add_smooth_normals(mesh);
+    mitsuba::orient_by_normals(mesh);
+    fuzz::expect_sound(mesh);
+  } catch (const SceneError& e) {
+    fuzz::expect(*e.what() != '\0', "an error says something");
+  }
+  return 0;
+}
