@@ -30,6 +30,8 @@ void check_scene_file(const std::filesystem::path& file) {
   for (const std::string& w : c.warnings) terminal.warning(w);
   fmt::print("{}: {} triangles, {} materials, {} textures, {} cameras, {} lights\n",
              file.filename().string(), c.triangles, c.materials, c.textures, c.cameras, c.lights);
+  const auto point = [](const V3d& p) { return fmt::format("[{:g}, {:g}, {:g}]", p.x, p.y, p.z); };
+  fmt::print("  box: {} to {}\n", point(c.box.low), point(c.box.high));
   std::size_t widest = 0;
   for (const FeatureUse& f : c.features) widest = std::max(widest, f.name.size());
   for (const FeatureUse& f : c.features) {

@@ -56,10 +56,17 @@ SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& poo
   SceneData data = load_gltf(file);
   // Without glTF's own material, and copies for vertex colours.
   const auto materials = std::ranges::count(data.materials, false, &Material::vertex_colors) - 1;
-  SceneCounts counts{data.triangle_count(), static_cast<std::size_t>(materials),
-                     data.textures.size(),  data.cameras.size(),
-                     data.lights.size(),    data.warnings,
-                     features_of(file),     {}};
+  SceneCounts counts{data.triangle_count(),
+                     static_cast<std::size_t>(materials),
+                     data.textures.size(),
+                     data.cameras.size(),
+                     data.lights.size(),
+                     data.bounds(),
+                     data.warnings,
+                     features_of(file),
+                     {}};
+  counts.box.low += data.origin;
+  counts.box.high += data.origin;
   constexpr std::size_t most_views = 16;
   for (const CameraData& camera :
        std::span(data.cameras).first(std::min(most_views, data.cameras.size()))) {

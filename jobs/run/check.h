@@ -6,6 +6,7 @@
 
 #include "base/parallel/thread_pool.h"
 #include "jobs/run/run_job.h"
+#include "renderer/core/bounds.h"
 #include "renderer/gltf/gltf_features.h"
 
 namespace lacuna {
@@ -17,6 +18,7 @@ std::vector<std::string> check_job(const JobSpec& spec, const RunContext& contex
 /// The contents of a scene.
 struct SceneCounts {
   std::size_t triangles = 0, materials = 0, textures = 0, cameras = 0, lights = 0;
+  Bounds box;  ///< of all triangles, in the coordinates of the file
   std::vector<std::string> warnings;
   std::vector<FeatureUse> features;  ///< what of glTF the file uses
   /// Its first 16 cameras, each as the job's object that has the same view.

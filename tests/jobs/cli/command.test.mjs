@@ -50,7 +50,7 @@ test("check --scene: what a scene holds, or why it is none", async (t) => {
   const folder = temporaryFolder(t);
   const good = await run(folder, "check", "--scene", join(root, "jobs/scenes/cornell.glb"));
   assert.equal(good.code, 0, good.err);
-  assert.match(good.out, /^cornell\.glb: [1-9]\d* triangles, [1-9]\d* materials, \d+ textures, [1-9]\d* cameras, \d+ lights\n/);
+  assert.match(good.out, /^cornell\.glb: [1-9]\d* triangles, [1-9]\d* materials, \d+ textures, [1-9]\d* cameras, \d+ lights\n  box: \[[-.e\d]+, [-.e\d]+, [-.e\d]+\] to \[/);
   assert.match(good.out, /^  metallic-roughness +exact +GGX /m, "what of glTF it uses");
   assert.match(good.out, /^  ".+": \{"position": \[.*\], "target": \[.*\], "up": \[.*\], "fov": [\d.]+\}$/m, "its cameras");
   const features = await run(folder, "check", "--features");
