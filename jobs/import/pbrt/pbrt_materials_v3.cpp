@@ -34,6 +34,9 @@ struct V3Material {
   }
 };
 
+/// The mean of Schlick's Fresnel term over the projected hemisphere.
+double mean_schlick(double f0) { return f0 + (1 - f0) / 21; }
+
 Rgb uniform(float x) { return {x, x, x}; }
 
 ImportedMaterial matte(const V3Material& s) {
@@ -48,8 +51,9 @@ ImportedMaterial matte(const V3Material& s) {
 
 /// Lambert's lobe plus facets with the Fresnel reflectance of an interface, neither dimmed by the
 /// other. In weights: w (Kd / w) + (1 - w) (Ks F / (1 - w)), which is exact if both colours are at
-/// most 1; a conductor without absorption has that Fresnel reflectance. Else glTF's own material,
-/// which dims the diffuse lobe by the Fresnel reflectance.
+/// most 1: w is from max Kd to 1 - max Ks, where F asks for as much as there is. A conductor
+/// without absorption has that Fresnel reflectance. Else glTF's own material, whose diffuse lobe
+/// the Fresnel reflectance dims: brightened so that the mean stays.
 ImportedMaterial diffuse_and_facets(const V3Material& s, const ImportedValue& kd,
                                     const ImportedValue& ks, const Facets& facets, double index) {
   ImportedMaterial m;
@@ -63,7 +67,7 @@ ImportedMaterial diffuse_and_facets(const V3Material& s, const ImportedValue& kd
   set_facets(specular, facets);
   if (!(d > 0)) return specular;
   if (d + r <= 1) {
-    const float w = d / (d + r);
+    const float w = 1 - r;
     m.diffuse.value /= w;
     specular.reflectance.value /= 1 - w;
     return mixture_of(m, uniform(w), specular, uniform(1 - w));
@@ -71,6 +75,11 @@ ImportedMaterial diffuse_and_facets(const V3Material& s, const ImportedValue& kd
   m.type = ImportedMaterial::Type::standard;
   m.ior = index;
   m.specular = std::min(double(luminance(ks.value)), 1.0);
+  const double f0 = std::pow((index - 1) / (index + 1), 2);
+  const auto undimmed = static_cast<float>(1 / (1 - m.specular * mean_schlick(f0)));
+  for (int c = 0; c < 3; ++c) {
+    m.diffuse.value[c] = std::min(kd.value[c] * undimmed, std::max(kd.value[c], 1.0F));
+  }
   m.roughness = std::sqrt((facets.alpha[0] + facets.alpha[1]) / 2);
   m.alpha_texture = facets.texture;
   s.approximated("glTF's own material: its diffuse lobe is dimmed by the specular one");
@@ -118,7 +127,8 @@ ImportedMaterial uber(const V3Material& s) {
   return m;
 }
 
-/// Ashikhmin and Shirley's coat: like glTF's own material of F0 = Ks.
+/// Ashikhmin and Shirley's coat: like glTF's own material of F0 = Ks, with the mean albedo of their
+/// diffuse lobe, 23 / 28 (1 - Ks) Kd, instead of one minus that of Schlick's term.
 ImportedMaterial substrate(const V3Material& s) {
   ImportedMaterial m;
   m.type = ImportedMaterial::Type::standard;
@@ -126,10 +136,11 @@ ImportedMaterial substrate(const V3Material& s) {
   const ImportedValue ks = s.colour("Ks", 0.5F);
   const double f0 = std::clamp(double(luminance(ks.value)) * (ks.texture ? 0.5 : 1), 0.0, 0.9);
   m.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+  m.diffuse.value *= static_cast<float>(23.0 / 28 * (1 - f0) / (1 - mean_schlick(f0)));
   const Facets facets = read_facets(s.context, s.p, 0.1);
   m.roughness = std::sqrt((facets.alpha[0] + facets.alpha[1]) / 2);
   m.alpha_texture = facets.texture;
-  s.approximated("glTF's own material of the same reflectance at normal incidence");
+  s.approximated("glTF's own material of the same mean albedo");
   return m;
 }
 
