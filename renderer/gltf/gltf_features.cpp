@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <set>
 
 #include "renderer/geometry/scene_data.h"
@@ -220,7 +219,9 @@ std::vector<FeatureUse> features_of(const std::filesystem::path& file) {
     if (used) uses.push_back({std::string(f.name), std::string(name_of(f.treatment)), text_of(f)});
   }
   constexpr std::size_t most_unknown = 16;
-  for (const std::string& unknown : extensions | std::views::take(most_unknown)) {
+  const std::size_t with_unknown = uses.size() + most_unknown;
+  for (const std::string& unknown : extensions) {
+    if (uses.size() == with_unknown) break;
     uses.push_back({unknown.substr(0, 100), "left out", ""});
   }
   return uses;
