@@ -1,4 +1,4 @@
-#include "jobs/import/pbrt/pbrt_import.h"
+#include "jobs/import/pbrt/read_pbrt.h"
 #include "renderer/core/scene_error.h"
 #include "tests/fuzz/imported_scene.h"
 #include "tests/fuzz/input_file.h"
@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const fuzz::InputFile file("scene.pbrt");
   const auto& path = file.holding({data, size});
   try {
-    const ImportedScene scene = import_pbrt(path, MissingFiles::skip);
+    const ImportedScene scene = read_pbrt(path, MissingFiles::skip);
     fuzz::expect_sound(scene);
     fuzz::expect(scene.cameras.size() == 1, "there is a camera");
   } catch (const SceneError& e) {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "jobs/import/pbrt/pbrt_import.h"
+#include "jobs/import/pbrt/read_pbrt.h"
 #include "renderer/core/scene_error.h"
 #include "tests/temporary_folder.h"
 
@@ -21,7 +21,7 @@ class PbrtFolder {
     return file;
   }
   ImportedScene import(const std::string& text, MissingFiles missing = MissingFiles::refuse) const {
-    return import_pbrt(write("scene.pbrt", text), missing);
+    return read_pbrt(write("scene.pbrt", text), missing);
   }
   /// The message that the import of `text` ends with.
   std::string error(const std::string& text) const {

@@ -90,7 +90,7 @@ TEST(PbrtTokens, AttributesEndWhereTheyBegan) {
 TEST(PbrtTokens, SeedsOfTheFuzzTargetAreScenes) {
   for (const char* name : {"v3.pbrt", "v4.pbrt"}) {
     const auto file = std::filesystem::path(LACUNA_SOURCE_DIR) / "tests/fuzz/corpus/pbrt" / name;
-    EXPECT_GT(import_pbrt(file, MissingFiles::skip).shapes.size(), 2) << name;
+    EXPECT_GT(read_pbrt(file, MissingFiles::skip).shapes.size(), 2) << name;
   }
 }
 

@@ -10,6 +10,6 @@ namespace lacuna {
 /// statement that only one of them has. Files that it names lie within its folder. Throws
 /// SceneError with file and line for what is not valid, and, unless `missing` is skip, for the
 /// first of the files that do not exist; InputUnreadable if a file cannot be read now.
-ImportedScene import_pbrt(const std::filesystem::path& file, MissingFiles missing);
+ImportedScene read_pbrt(const std::filesystem::path& file, MissingFiles missing);
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-#include "jobs/import/pbrt/pbrt_import.h"
+#include "jobs/import/pbrt/read_pbrt.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-ImportedScene import_pbrt(const std::filesystem::path& file, MissingFiles missing) {
+ImportedScene read_pbrt(const std::filesystem::path& file, MissingFiles missing) {
   const auto version = pbrt::find_version(file);
   pbrt::Reader reader(file, version.value_or(pbrt::Version::v4));
   if (!version) {
