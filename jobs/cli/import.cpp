@@ -9,6 +9,7 @@
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/import/mitsuba/read_mitsuba.h"
+#include "jobs/import/pbrt/read_pbrt.h"
 #include "jobs/import/scene_write.h"
 #include "jobs/run/check.h"
 #include "jobs/spec/job_json.h"
@@ -20,8 +21,10 @@ namespace {
 ImportedScene read_foreign_scene(const std::filesystem::path& file, MissingFiles missing) {
   const std::string kind = file.extension().string();
   if (kind == ".xml") return read_mitsuba(file, missing);
+  if (kind == ".pbrt" || file.string().ends_with(".pbrt.gz")) return read_pbrt(file, missing);
   throw SceneError(
-      fmt::format("\"{}\" ends in \"{}\"; allowed: .xml (Mitsuba)", file.string(), kind));
+      fmt::format("\"{}\" ends in \"{}\"; allowed: .xml (Mitsuba), .pbrt, .pbrt.gz (pbrt)",
+                  file.string(), kind));
 }
 
 void print_notes(const std::vector<ImportNote>& notes) {
@@ -63,7 +66,10 @@ void add_import(CLI::App& app, int& code) {
       "import",
       "Write a scene of another renderer as glTF with a job: DIR/scene.glb, its textures, "
       "DIR/job.json; print what is not represented exactly");
-  command->add_option("FILE", *file, "a scene of Mitsuba 0.6, 2 or 3 (.xml)")
+  command
+      ->add_option(
+          "FILE", *file,
+          "a scene of Mitsuba 0.6, 2 or 3 (.xml), or of pbrt-v3 or pbrt-v4 (.pbrt, .pbrt.gz)")
       ->required()
       ->check(CLI::ExistingFile);
   command->add_option("--out", *out,

@@ -207,7 +207,7 @@ Rgb conductor_index(Context& context, const Parameters& parameters, const char* 
   if (!metal.empty()) {
     const auto index = named_metal(metal);
     if (!index) fail(p->place, fmt::format("there is no named spectrum \"{}\"", text));
-    if (!context.is_v3()) {
+    if (!context.is_v3() && !imaginary) {
       context.approximated(parameters.place(), parameters.owner(),
                            fmt::format("the spectra of {} are three values each", metal));
     }
