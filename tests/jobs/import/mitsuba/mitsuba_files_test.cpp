@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cstring>
+
+#include "jobs/import/mitsuba/mesh_files.h"
+#include "jobs/import/mitsuba/read_mitsuba.h"
+#include "renderer/core/scene_error.h"
+#include "tests/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+template <class T>
+void append_value(std::string& to, T value) {
+  to.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string out(size, '\0');
+  compress(reinterpret_cast<Bytef*>(out.data()), &size,
+           reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  out.resize(size);
+  return out;
+}
+
+/// A triangle with texture coordinates, its vertices at z = `z`.
+std::string serialized_triangle(std::uint16_t version, double z, std::uint64_t claimed = 3) {
+  std::string body;
+  const bool doubles = version == 4;
+  append_value(body, std::uint32_t(doubles ? 0x2002 : 0x1002));
+  if (version == 4) body += std::string("tri\0", 4);
+  append_value(body, claimed);
+  append_value(body, std::uint64_t{1});
+  for (const double v : {0., 0., z, 1., 0., z, 0., 1., z, .25, .5, 1., 0., 0., 1.}) {
+    if (doubles) append_value(body, v);
+    if (!doubles) append_value(body, static_cast<float>(v));
+  }
+  for (const std::uint32_t i : {0U, 1U, 2U}) append_value(body, i);
+  std::string file;
+  append_value(file, std::uint16_t{0x041C});
+  append_value(file, version);
+  return file + deflated(body);
+}
+
+std::string serialized_file(std::uint16_t version) {
+  const std::string first = serialized_triangle(version, 1),
+                    second = serialized_triangle(version, 2);
+  std::string file = first + second;
+  for (const std::uint64_t offset : {std::uint64_t{0}, std::uint64_t{first.size()}}) {
+    if (version == 4) append_value(file, offset);
+    if (version == 3) append_value(file, static_cast<std::uint32_t>(offset));
+  }
+  append_value(file, std::uint32_t{2});
+  return file;
+}
+
+ImportedMesh serialized_of(const std::string& file, std::uint64_t index) {
+  return mitsuba::serialized_mesh({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()},
+                                  index, "mesh.serialized");
+}
+
+TEST(MitsubaFiles, SerializedMeshesOfBothVersions) {
+  for (const std::uint16_t version : {std::uint16_t{3}, std::uint16_t{4}}) {
+    const std::string file = serialized_file(version);
+    for (const std::uint64_t index : {0U, 1U}) {
+      const ImportedMesh mesh = serialized_of(file, index);
+      ASSERT_EQ(mesh.positions.size(), 3U);
+      EXPECT_EQ(mesh.positions[1], V3f(1, 0, static_cast<float>(index + 1)));
+      ASSERT_EQ(mesh.uvs.size(), 3U);
+      EXPECT_EQ(mesh.uvs[0], V2f(.25F, .5F));
+      EXPECT_TRUE(mesh.normals.empty());
+    }
+    EXPECT_TRUE(contains(message_of<SceneError>([&] { serialized_of(file, 2); }),
+                         "mesh 2 is asked for; allowed: 0 to 1"));
+    for (std::size_t n = 0; n < file.size(); n += 3) {
+      EXPECT_THROW(serialized_of(file.substr(0, n), 0), SceneError) << n;
+    }
+  }
+}
+
+TEST(MitsubaFiles, SerializedMeshMayNotClaimMoreThanItHolds) {
+  std::string file = serialized_triangle(4, 1, std::uint64_t{1} << 60);
+  append_value(file, std::uint64_t{0});
+  append_value(file, std::uint32_t{1});
+  EXPECT_TRUE(contains(message_of<SceneError>([&] { serialized_of(file, 0); }), "it claims"));
+}
+
+TEST(MitsubaFiles, ObjSharesCornersAndRefusesMissingVertices) {
+  const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\n";
+  const ImportedMesh mesh = mitsuba::obj_mesh(quad + "f 1/1 2/1 3/2\nf 1/1 3/2 4/1\n", "a.obj");
+  EXPECT_EQ(mesh.positions.size(), 4U);
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_EQ(mesh.uvs[2], V2f(1, 1));
+  EXPECT_TRUE(contains(
+      message_of<SceneError>([&] { mitsuba::obj_mesh(quad + "f 1/1 2/1 9/2\n", "a.obj"); }),
+      "a.obj: a face names vertex 9 of 4"));
+}
+
+TEST(MitsubaFiles, FrontIsWhereNormalsPoint) {
+  ImportedMesh mesh =
+      mitsuba::obj_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n", "a.obj");
+  mitsuba::orient_by_normals(mesh);
+  EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 2, 1}));
+  mesh.normals.clear();
+  mitsuba::add_smooth_normals(mesh);
+  EXPECT_EQ(mesh.normals[0], V3f(0, 0, -1));
+}
+
+constexpr const char* named_files = R"(<scene version="0.6.0"><sensor type="orthographic"/>
+  <shape type="obj"><string name="filename" value="there.obj"/>
+    <bsdf type="diffuse"><texture type="bitmap" name="reflectance">
+      <string name="filename" value="gone.png"/></texture></bsdf></shape>
+  <shape type="ply"><string name="filename" value="gone.ply"/></shape>
+</scene>)";
+
+TEST(MitsubaFiles, MissingOnesAreNamedOrSkipped) {
+  const TemporaryFolder folder;
+  folder.write("there.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  const auto file = folder.write("scene.xml", std::string(named_files));
+  const std::string refusal =
+      message_of<SceneError>([&] { read_mitsuba(file, MissingFiles::refuse); });
+  EXPECT_TRUE(contains(refusal, "scene.xml:3: gone.png does not exist, nor do 1 others"))
+      << refusal;
+  const ImportedScene scene = read_mitsuba(file, MissingFiles::skip);
+  EXPECT_EQ(scene.shapes.size(), 1U);
+  ASSERT_EQ(scene.notes.size(), 2U);
+  EXPECT_EQ(scene.notes[1].how, "gone.ply is missing");
+}
+
+std::string refusal_of_include(const TemporaryFolder& folder, const std::string& included,
+                               const std::string& content) {
+  folder.write("a.xml", "<scene version='0.6.0'>\n<include filename='" + included + "'/></scene>");
+  folder.write("b.xml", content);
+  return message_of<SceneError>([&] { read_mitsuba(folder / "a.xml", MissingFiles::refuse); });
+}
+
+TEST(MitsubaFiles, IncludesStayInTheFolderAndEnd) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(
+      contains(refusal_of_include(folder, "b.xml", "<scene><include filename='a.xml'/></scene>"),
+               "b.xml:1: include includes \"a.xml\", which includes it: a circle"));
+  for (const char* outside : {"../b.xml", "/etc/passwd", "..\\b.xml", "x/../../b.xml"}) {
+    EXPECT_TRUE(contains(refusal_of_include(folder, outside, ""),
+                         "allowed: files in the folder of the scene"))
+        << outside;
+  }
+  std::filesystem::create_symlink("/etc/hostname", folder / "link.xml");
+  EXPECT_TRUE(contains(refusal_of_include(folder, "link.xml", ""), "allowed: files in the folder"));
+  EXPECT_TRUE(contains(refusal_of_include(folder, "c.xml", ""), "cannot find \"c.xml\""));
+}
+
+TEST(MitsubaFiles, HostileXmlIsRefused) {
+  const auto refusal = [](const std::string& xml) {
+    return message_of<SceneError>([&] { read_mitsuba_text(xml); });
+  };
+  EXPECT_TRUE(contains(refusal("<!DOCTYPE s [<!ENTITY a 'b'><!ENTITY c '&a;&a;'>]><scene>&c;"
+                               "</scene>"),
+                       "document type"));
+  std::string deep = "<scene>";
+  for (int i = 0; i < 70; ++i) deep += "<shape>";
+  for (int i = 0; i < 70; ++i) deep += "</shape>";
+  EXPECT_TRUE(contains(refusal(deep + "</scene>"), "nested more than 64 deep"));
+  EXPECT_TRUE(contains(refusal("<scene>\n<shape></scene>"), "scene.xml:2: no XML"));
+  std::string doubling = "<scene><default name='a0' value='xxxxxxxxxxxxxxxx'/>";
+  for (int i = 0; i < 20; ++i) {
+    const std::string next = std::to_string(i + 1), now = std::to_string(i);
+    doubling += "<default name='a" + next + "' value='$a" + now + ";$a" + now + "'/>";
+  }
+  EXPECT_TRUE(contains(refusal(doubling + "</scene>"), "longer than 65536 bytes"));
+  EXPECT_TRUE(contains(refusal("<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf "
+                               "type='twosided' id='b'><ref id='a'/></bsdf><shape type='cube'>"
+                               "<ref id='a'/></shape></scene>"),
+                       "is within itself: a circle"));
+}
+
+}  // namespace
+}  // namespace lacuna
