@@ -8,7 +8,15 @@ JOBS = ("tests/server/jobs.test.mjs",)
 EVENTS = ("tests/server/events.test.mjs",)
 SWEEPS = ("tests/server/sweeps.test.mjs",)
 
+ARCHIVES = ("test_server",)
+
 FAULTS = [
+    Fault("an archive leaves its folder", "server/routes/scene_archive.cpp",
+          'if (part.empty() || part == "." || part == "..")', 'if (part.empty() || part == ".")', ARCHIVES),
+    Fault("an archive has links", "server/routes/scene_archive.cpp",
+          "type == 0 || S_ISREG(type);", "type == 0 || S_ISREG(type) || S_ISLNK(type);", ARCHIVES),
+    Fault("a folder with more files is the same", "server/routes/scene_uploads.cpp",
+          "}) == static_cast<std::ptrdiff_t>(files);", "}) >= static_cast<std::ptrdiff_t>(files);", ARCHIVES),
     # Requests and responses.
     Fault("If-Match is not looked at before a cancel", "server/routes/job_routes.cpp",
           "queue_.cancel(id, wanted_revision(request));", 'queue_.cancel(id, "");', REQUESTS),
