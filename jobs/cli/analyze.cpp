@@ -11,6 +11,7 @@
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/overlay.h"
+#include "jobs/cli/scene_choice_options.h"
 #include "jobs/cli/settings_options.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/clock.h"
@@ -26,6 +27,7 @@ namespace {
 
 struct AnalyzeOptions {
   std::string scene, camera;
+  SceneChoice choice;
   AnalysisSettings analysis;
   std::filesystem::path out;
   int threads = 0;
@@ -143,7 +145,7 @@ void write_overlays(const std::filesystem::path& dir, const SceneData& scene,
 void analyze(const AnalyzeOptions& o) {
   const ThreadPool pool(o.threads, interrupt_requested());
   Terminal terminal({}, false);
-  const SceneData scene = load_gltf(find_scene(o.scene));
+  const SceneData scene = load_gltf(find_scene(o.scene), nullptr, o.choice);
   const CameraData camera = choose_camera(scene, o.camera, o.scene);
   const DataRoot data = DataRoot::from_environment();
   ArtefactStore store(
@@ -185,6 +187,7 @@ void add_analyze(CLI::App& app, int& code) {
       ->required();
   command->add_option("--camera", o->camera,
                       "camera that selects the part of the empty space (default: the first)");
+  add_scene_choice(*command, o->choice);
   SettingsOptions options(*command);
   describe(options, o->analysis);
   command->add_option(

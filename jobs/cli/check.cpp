@@ -6,6 +6,7 @@
 #include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
+#include "jobs/cli/scene_choice_options.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/check.h"
 #include "jobs/spec/job_json.h"
@@ -23,10 +24,10 @@ void check_job_file(const std::filesystem::path& job) {
   fmt::print("{}", write_job(spec));
 }
 
-void check_scene_file(const std::filesystem::path& file) {
+void check_scene_file(const std::filesystem::path& file, const SceneChoice& choice) {
   const ThreadPool pool(0);
   Terminal terminal({}, true);
-  const SceneCounts c = check_scene(file, pool);
+  const SceneCounts c = check_scene(file, choice, pool);
   for (const std::string& w : c.warnings) terminal.warning(w);
   fmt::print("{}: {} triangles, {} materials, {} textures, {} cameras, {} lights\n",
              file.filename().string(), c.triangles, c.materials, c.textures, c.cameras, c.lights);
@@ -53,18 +54,22 @@ void add_check(CLI::App& app, int& code) {
       ->add_option("--scene", *scene,
                    "check a scene (.glb, .gltf) instead and print its contents: what of "
                    "glTF it uses and how that is treated, and its cameras")
-      ->check(CLI::ExistingFile);
+      ->check(CLI::ExistingFile)
+      ->excludes("JOB");
+  const auto choice = std::make_shared<SceneChoice>();
+  add_scene_choice(*command, *choice);
   const auto features = std::make_shared<bool>(false);
   command->add_flag("--features", *features,
                     "print what is read of glTF, and how, as a table in Markdown");
-  command->require_option(1);
-  command->callback([job, scene, features, &code] {
+  command->require_option(1, 0);
+  command->callback([job, scene, choice, features, &code] {
     if (*features) {
       fmt::print("{}", feature_table());
     } else if (scene->empty()) {
+      if (job->empty()) throw CLI::RequiredError("JOB or --scene");
       check_job_file(*job);
     } else {
-      check_scene_file(*scene);
+      check_scene_file(*scene, *choice);
     }
     code = exit_done;
   });

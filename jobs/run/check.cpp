@@ -46,14 +46,15 @@ std::string view_of(const CameraData& camera, const V3d& origin) {
 
 }  // namespace
 
-SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool) {
+SceneCounts check_scene(const std::filesystem::path& file, const SceneChoice& choice,
+                        const ThreadPool& pool) {
   if (const std::string kind = file.extension().string(); kind != ".glb" && kind != ".gltf") {
     throw SceneError(
         fmt::format("\"{}\" ends in \"{}\"; allowed: .glb and .gltf; Blender's glTF exporter "
                     "converts other formats, or `assimp export {} {}`",
                     file.string(), kind, file.filename().string(), file.stem().string() + ".glb"));
   }
-  SceneData data = load_gltf(file);
+  SceneData data = load_gltf(file, nullptr, choice);
   // Without glTF's own material, and copies for vertex colours.
   const auto materials = std::ranges::count(data.materials, false, &Material::vertex_colors) - 1;
   SceneCounts counts{data.triangle_count(),

@@ -8,6 +8,7 @@
 #include "jobs/run/run_job.h"
 #include "renderer/core/bounds.h"
 #include "renderer/gltf/gltf_features.h"
+#include "renderer/gltf/gltf_load.h"
 
 namespace lacuna {
 
@@ -26,6 +27,7 @@ struct SceneCounts {
 };
 
 /// Loads a scene and builds everything that a job can need of it. Throws SceneError as a job would.
-SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool);
+SceneCounts check_scene(const std::filesystem::path& file, const SceneChoice& choice,
+                        const ThreadPool& pool);
 
 }  // namespace lacuna

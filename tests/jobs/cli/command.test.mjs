@@ -46,6 +46,32 @@ test("check prints the job with its defaults, which is the same job", async (t) 
   assert.equal(JSON.parse(checked.out).integrator.type, "path");
 });
 
+test("check and analyze take the pose and the variant that a job would", async (t) => {
+  const folder = temporaryFolder(t);
+  const floats = (...numbers) => Buffer.from(new Float32Array(numbers).buffer);
+  const bin = Buffer.concat([floats(0, 0, 0, 1, 0, 0, 0, 1, 0), floats(0, 1), floats(0, 0, 0, 0, 0, 8)]);
+  const view = (byteOffset, byteLength) => ({ buffer: 0, byteOffset, byteLength });
+  const accessor = (bufferView, count, type) => ({ bufferView, count, type, componentType: 5126 });
+  writeFileSync(join(folder, "moves.gltf"), JSON.stringify({ asset: { version: "2.0" },
+    scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+    animations: [{ name: "away", channels: [{ sampler: 0, target: { node: 0, path: "translation" } }],
+      samplers: [{ input: 1, output: 2 }] }],
+    accessors: [accessor(0, 3, "VEC3"), { ...accessor(1, 2, "SCALAR"), min: [0], max: [1] }, accessor(2, 2, "VEC3")],
+    bufferViews: [view(0, 36), view(36, 8), view(44, 24)],
+    buffers: [{ byteLength: bin.length, uri: `data:application/octet-stream;base64,${bin.toString("base64")}` }] }));
+  const box = async (...choice) => /box: (.*)/.exec((await run(folder, "check", "--scene", "moves.gltf", ...choice)).out)?.[1];
+  assert.equal(await box(), "[0, 0, 0] to [1, 1, 0]");
+  assert.equal(await box("--time", "0.5", "--animation", "away"), "[0, 0, 4] to [1, 1, 4]");
+  const without = await run(folder, "check", "--scene", "moves.gltf", "--animation", "away");
+  assert.equal(without.code, 2, "an animation without a time");
+  for (const command of [["check", "--scene", "moves.gltf"], ["analyze", "moves.gltf"]]) {
+    const unknown = await run(folder, ...command, "--variant", "red");
+    assert.equal(unknown.code, 3, unknown.err);
+    assert.match(unknown.err, /there is no variant "red"/);
+  }
+});
+
 test("check --scene: what a scene holds, or why it is none", async (t) => {
   const folder = temporaryFolder(t);
   const good = await run(folder, "check", "--scene", join(root, "jobs/scenes/cornell.glb"));
