@@ -61,6 +61,7 @@ bool meets(const AlphaMask& mask, const RTCFilterFunctionNArguments* args, unsig
   const std::uint32_t triangle = RTCHitN_primID(args->hit, n, i);
   const float coverage =
       mask.coverage(triangle, {RTCHitN_u(args->hit, n, i), RTCHitN_v(args->hit, n, i)});
+  if (coverage >= 1 || !(coverage > 0)) return coverage >= 1;
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
   const std::array<std::uint32_t, 9> event{
       bits(RTCRayN_org_x(args->ray, n, i)), bits(RTCRayN_org_y(args->ray, n, i)),

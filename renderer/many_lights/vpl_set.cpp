@@ -69,7 +69,7 @@ void VplSet::add(StoredLights& path, const EmitterPoint& e) const {
     path.points.push_back(
         {e.x, everywhere, everywhere, 1, e.emission * (share_ / e.pdf.value), 0, 0});
   } else {
-    path.general.push_back({e, 0});
+    path.general.emplace_back(e, 0);
   }
 }
 
@@ -80,7 +80,7 @@ void VplSet::add(StoredLights& path, const Vertex& v, int index) const {
     path.diffuse.push_back({v.surface.x, lobe->side, lobe->ns, lobe->shading_cosine_ratio, rgb,
                             v.surface.offset, index});
   } else {
-    path.general.push_back({v, index});
+    path.general.emplace_back(v, index);
   }
 }
 

@@ -31,24 +31,25 @@ struct RefractingFacet {
 }  // namespace
 
 Rgb Bsdf::albedo() const {
-  if (lobes_.kind != Lobes::Kind::layered) return lobes_.diffuse;
-  const Rgb base = lobes_.interface.r0 +
-                   lobes_.layer.let_through(0.0F) * (lobes_.diffuse + lobes_.diffuse_through) +
-                   lobes_.interface.glass_color;
-  if (!lobes_.covers.any()) return base;
-  const float coat = lobes_.covers.coat.reflectance(1);
+  if (lobes_->kind != Lobes::Kind::layered) return lobes_->diffuse;
+  const Rgb through = lobes_->further ? lobes_->further->diffuse_through : Rgb(0, 0, 0);
+  const Rgb base = lobes_->interface.r0 +
+                   lobes_->layer.let_through(0.0F) * (lobes_->diffuse + through) +
+                   lobes_->interface.glass_color;
+  if (!lobes_->further || !lobes_->further->covers.any()) return base;
+  const float coat = lobes_->further->covers.coat.reflectance(1);
   const Rgb white(1, 1, 1);
   // Sheen is seen at grazing angles: half of it stands for all directions.
-  const Rgb sheen = 0.5F * lobes_.covers.sheen.color();
+  const Rgb sheen = 0.5F * lobes_->further->covers.sheen.color();
   return coat * white + (1 - coat) * (sheen + (white - sheen) * base);
 }
 
 Bsdf::ShadingFrame Bsdf::shading_frame(const V3f& n, const V3f& wo) const {
   const bool front = dot(wo, ng_) > 0;
-  const Interface& i = lobes_.interface;
+  const Interface& i = lobes_->interface;
   ShadingFrame result{n, front, dot(wo, n), i.eta(front), i.bend(front)};
-  if (lobes_.facets_compete()) result.mean_weight = lobes_.layer.mean_weight(result.cos_o);
-  if (lobes_.extended) result.through = let_through(wo, result.cos_o);
+  if (lobes_->facets_compete()) result.mean_weight = lobes_->layer.mean_weight(result.cos_o);
+  if (lobes_->further) result.through = let_through(wo, result.cos_o);
   return result;
 }
 
@@ -64,28 +65,28 @@ template <bool want_f, bool want_pdf>
 void Bsdf::reflected(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                      Scatter& s) const {
   const float cos_i = dot(wi, from.n);
-  if (lobes_.has_diffuse()) {
+  if (lobes_->has_diffuse()) {
     if constexpr (want_f) {
       const float scale =
-          lobes_.layer.scale(lobes_.layer.let_through(from.mean_weight),
-                             lobes_.layer.let_through(lobes_.layer.mean_weight(cos_i)));
-      s.f = lobes_.diffuse * (scale * cos_i * inv_pi);
+          lobes_->layer.scale(lobes_->layer.let_through(from.mean_weight),
+                              lobes_->layer.let_through(lobes_->layer.mean_weight(cos_i)));
+      s.f = lobes_->diffuse * (scale * cos_i * inv_pi);
     }
     if constexpr (want_pdf) s.pdf = static_cast<float>(c->diffuse) * cos_i * inv_pi;
   }
   const V3f h = wo + wi;
   const float length = std::sqrt(h.length2());
-  if (lobes_.interface.smooth() || length < cos_rounding) return;
+  if (lobes_->interface.smooth() || length < cos_rounding) return;
   const V3f m = h * (1 / length);
   const Facets all = facets(from.n);
   const float d = all.d(m);
   Interface::Split split;
-  if (want_f || lobes_.facets_transmit()) split = lobes_.interface.split(0.5F * length, from.eta);
+  if (want_f || lobes_->facets_transmit()) split = lobes_->interface.split(0.5F * length, from.eta);
   if constexpr (want_f) s.f += split.reflected * (d * all.g2_over_4cos(wo, from.cos_o, wi, cos_i));
   if constexpr (want_pdf) {
     // Visible normals; dm / dwi = 1 / (4 wo.m).
     const FacetProbabilities coin =
-        lobes_.facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
+        lobes_->facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
     s.pdf +=
         static_cast<float>(c->facets * coin.reflect) * 0.25F * all.g1_over_cos(wo, from.cos_o) * d;
   }
@@ -94,21 +95,21 @@ void Bsdf::reflected(const ShadingFrame& from, const Choice* c, const V3f& wo, c
 template <bool want_f, bool want_pdf>
 void Bsdf::transmitted(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                        Scatter& s) const {
-  if (lobes_.extended && !is_black(lobes_.diffuse_through)) {
+  if (lobes_->further && !is_black(lobes_->further->diffuse_through)) {
     const float cos_i = -dot(wi, from.n);
     if constexpr (want_f) {
       const float scale =
-          lobes_.layer.scale(lobes_.layer.let_through(from.mean_weight),
-                             lobes_.layer.let_through(lobes_.layer.mean_weight(cos_i)));
+          lobes_->layer.scale(lobes_->layer.let_through(from.mean_weight),
+                              lobes_->layer.let_through(lobes_->layer.mean_weight(cos_i)));
       // Reciprocal between two media: f / n_o^2 is the same for both directions, and a share of the
       // flux from outside. From inside, less leaves by as much as total reflection would return.
       const float share = std::min(1.0F, 1 / (from.bend * from.bend));
-      s.f = lobes_.diffuse_through * (scale * cos_i * inv_pi * share);
+      s.f = lobes_->further->diffuse_through * (scale * cos_i * inv_pi * share);
     }
     if constexpr (want_pdf) s.pdf = static_cast<float>(c->through) * cos_i * inv_pi;
   }
-  if (lobes_.interface.smooth() || !lobes_.facets_transmit()) return;
-  if (lobes_.interface.thin) {
+  if (lobes_->interface.smooth() || !lobes_->facets_transmit()) return;
+  if (lobes_->interface.thin) {
     mirrored<want_f, want_pdf>(from, c, wo, wi, s);
   } else {
     refracted<want_f, want_pdf>(from, c, wo, wi, s);
@@ -125,7 +126,7 @@ void Bsdf::mirrored(const ShadingFrame& from, const Choice* c, const V3f& wo, co
   if (length < cos_rounding) return;
   const Facets all = facets(from.n);
   const float d = all.d(h * (1 / length));
-  const Interface::Split split = lobes_.interface.split(0.5F * length, from.eta);
+  const Interface::Split split = lobes_->interface.split(0.5F * length, from.eta);
   if constexpr (want_f) {
     s.f += split.transmitted * (d * all.g2_over_4cos(wo, from.cos_o, wi, cos_i));
   }
@@ -140,7 +141,7 @@ void Bsdf::refracted(const ShadingFrame& from, const Choice* c, const V3f& wo, c
                      Scatter& s) const {
   const auto facet = RefractingFacet::find(from.n, wo, wi, from.eta);
   if (!facet) return;
-  const Rgb share = lobes_.interface.split(facet->cos_outside, lobes_.interface.ior).transmitted;
+  const Rgb share = lobes_->interface.split(facet->cos_outside, lobes_->interface.ior).transmitted;
   const float cos_i = -dot(wi, from.n);
   const Facets all = facets(from.n);
   const float common = all.d(facet->m) * all.g1_over_cos(wo, from.cos_o) * facet->cos_o *
@@ -150,7 +151,7 @@ void Bsdf::refracted(const ShadingFrame& from, const Choice* c, const V3f& wo, c
   if constexpr (want_f) s.f += share * (common * all.g1_over_cos(wi, cos_i) * cos_i);
   if constexpr (want_pdf) {
     // dm / dwi = eta^2 |wi.m| / (...)^2 (Walter et al. 2007, eq. 17).
-    const FacetProbabilities coin(lobes_.interface.split(facet->cos_o, from.eta).reflected, share);
+    const FacetProbabilities coin(lobes_->interface.split(facet->cos_o, from.eta).reflected, share);
     s.pdf += static_cast<float>(c->facets * coin.transmit) * common * from.eta * from.eta;
   }
 }
@@ -159,9 +160,9 @@ template <bool want_f, bool want_pdf>
 void Bsdf::cover(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                  Scatter& s) const {
   const float cos = dot(wi, from.n), cos_i = std::abs(cos);
-  const Covers& covers = lobes_.covers;
+  const Covers& covers = lobes_->further->covers;
   const Covers::Through o = from.through, i = let_through(wi, cos_i);
-  const bool lobes = cos > 0 && (lobes_.interface.thin || from.front);
+  const bool lobes = cos > 0 && (lobes_->interface.thin || from.front);
   const V3f h = wo + wi;
   const float length = std::sqrt(h.length2());
   const V3f m = length < cos_rounding ? from.n : h * (1 / length);
@@ -192,7 +193,7 @@ Bsdf::Scatter Bsdf::scatter(const ShadingFrame& from, const Choice* c, const V3f
   const int side = passage(from, wi);
   if (side > 0) reflected<want_f, want_pdf>(from, c, wo, wi, s);
   if (side < 0) transmitted<want_f, want_pdf>(from, c, wo, wi, s);
-  if (lobes_.extended && side != 0 && lobes_.covers.any()) {
+  if (lobes_->further && side != 0 && lobes_->further->covers.any()) {
     cover<want_f, want_pdf>(from, c, wo, wi, s);
   }
   return s;
@@ -204,7 +205,7 @@ template Bsdf::Scatter Bsdf::scatter<true, true>(const ShadingFrame&, const Choi
 Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
   const float side_i = dot(wi, ng_);
-  if (lobes_.kind == Lobes::Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
+  if (lobes_->kind == Lobes::Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
   if (transport == Transport::radiance || flat_) {
     const ShadingFrame from = shading_frame(eye_normal(wo, side), wo);
     const Rgb f = scatter<true, false>(from, nullptr, wo, wi).f;
@@ -222,7 +223,7 @@ Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport trans
     return {eval_any(wo, wi, transport), pdf_any(wo, wi, transport)};
   }
   const float side = dot(wo, ng_);
-  if (lobes_.kind == Lobes::Kind::black || side == 0) return {};
+  if (lobes_->kind == Lobes::Kind::black || side == 0) return {};
   const V3f n = eye_normal(wo, side);
   const bool front = side > 0;
   // Early out before the lobes' terms: half of all directions lie behind an opaque surface.
@@ -236,19 +237,19 @@ Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport trans
 }
 
 std::optional<LambertLobe> Bsdf::lambert_lobe(const V3f& from) const {
-  if (lobes_.kind != Lobes::Kind::lambert) return std::nullopt;
+  if (lobes_->kind != Lobes::Kind::lambert) return std::nullopt;
   const float side = dot(from, ng_);
   const V3f ng = side < 0 ? -ng_ : ng_;
-  if (flat_) return LambertLobe{lobes_.diffuse * inv_pi, ng, ng, 1};
+  if (flat_) return LambertLobe{lobes_->diffuse * inv_pi, ng, ng, 1};
   const V3f ns = side < 0 ? -ns_ : ns_;
   if (std::abs(side) < cos_rounding) return LambertLobe{Rgb(0, 0, 0), ng, ns, 1};
-  return LambertLobe{lobes_.diffuse * inv_pi, ng, ns,
+  return LambertLobe{lobes_->diffuse * inv_pi, ng, ns,
                      std::max(0.0F, dot(from, ns)) / std::abs(side)};
 }
 
 Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
-  if (lobes_.kind == Lobes::Kind::black || side == 0) return {};
+  if (lobes_->kind == Lobes::Kind::black || side == 0) return {};
   const auto density = [&](const V3f& n) {
     const ShadingFrame from = shading_frame(n, wo);
     const Choice c = choice(from);

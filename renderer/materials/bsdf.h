@@ -72,28 +72,32 @@ struct LambertLobe {
 class Bsdf {
  public:
   /// `ng` and `ns` are unit; `ns` is flipped to the side of `ng`. `wo` may lie on either side.
-  Bsdf(const Lobes& lobes, const V3f& ng, const V3f& ns)
+  /// `lobes` are Lobes, which are not copied and outlive the Bsdf and its copies; or what Lobes are
+  /// made of: the Bsdf holds these itself.
+  template <class Surface>
+  Bsdf(const Surface& lobes, const V3f& ng, const V3f& ns)
       : ng_(ng),
         ns_(dot(ns, ng) < 0 ? -ns : ns),
         flat_((ns_ - ng).length2() < 1e-12F),
         lobes_(lobes) {}
 
   /// Whether set_tangents() must be called: the facets have two widths.
-  bool needs_tangents() const { return lobes_.alpha_along > 0; }
+  bool needs_tangents() const { return lobes_->further && lobes_->further->alpha_along > 0; }
   /// The tangent frame of the surface, unit, in which SurfaceParams::direction lies.
   void set_tangents(const V3f& tangent, const V3f& bitangent) {
-    along_ = lobes_.direction.x * tangent + lobes_.direction.y * bitangent;
+    if (!needs_tangents()) return;
+    along_ = lobes_->further->direction.x * tangent + lobes_->further->direction.y * bitangent;
   }
 
   /// f(wo, wi) |cos(wi, ns)| of all non-delta lobes; the cosine is included.
   Rgb eval(const V3f& wo, const V3f& wi, Transport transport) const {
-    if (plain_lambert(transport)) return lobes_.diffuse * lambert(wo, wi);
+    if (plain_lambert(transport)) return lobes_->diffuse * lambert(wo, wi);
     return eval_any(wo, wi, transport);
   }
 
   /// Whether eval(wo, wi, radiance) is the same for wo = `a` and wo = `b`, for every wi.
   bool is_constant_in_wo(const V3f& a, const V3f& b) const {
-    return lobes_.kind == Lobes::Kind::lambert && flat_ && dot(a, ng_) * dot(b, ng_) > 0;
+    return lobes_->kind == Lobes::Kind::lambert && flat_ && dot(a, ng_) * dot(b, ng_) > 0;
   }
 
   /// Density with which sample(wo) returns wi by a non-delta lobe. It integrates to 1 minus the
@@ -115,7 +119,7 @@ class Bsdf {
   Evaluated evaluate(const V3f& wo, const V3f& wi, Transport transport) const {
     if (!plain_lambert(transport)) return evaluate_any(wo, wi, transport);
     const float l = lambert(wo, wi);
-    return {lobes_.diffuse * l, Pdf<SolidAngle>(l)};
+    return {lobes_->diffuse * l, Pdf<SolidAngle>(l)};
   }
 
   /// Samples wi. `u_lobe` and `u` are uniform in [0, 1). None if the sample fails (below the
@@ -132,10 +136,10 @@ class Bsdf {
 
   /// Whether some lobe is not a delta, so that the vertex can be connected to others.
   bool connectible() const {
-    return lobes_.kind == Lobes::Kind::lambert ||
-           (lobes_.kind == Lobes::Kind::layered &&
-            (!lobes_.interface.smooth() || lobes_.has_diffuse() ||
-             (lobes_.extended && has_broad_extension())));
+    return lobes_->kind == Lobes::Kind::lambert ||
+           (lobes_->kind == Lobes::Kind::layered &&
+            (!lobes_->interface.smooth() || lobes_->has_diffuse() ||
+             (lobes_->further && has_broad_extension())));
   }
 
   /// eval(from, w, importance) as a function of w; none unless the surface is purely Lambertian.
@@ -145,18 +149,19 @@ class Bsdf {
   /// diffuse or GGX with alpha >= `least_alpha`, or sheen.
   bool is_vpl_receiver(float least_alpha) const {
     if (transmits() || !connectible()) return false;
-    return lobes_.has_diffuse() || lobes_.interface.alpha >= least_alpha ||
-           (lobes_.extended &&
-            (lobes_.covers.sheen.any() || lobes_.covers.coat.alpha >= least_alpha));
+    return lobes_->has_diffuse() || lobes_->interface.alpha >= least_alpha ||
+           (lobes_->further && (lobes_->further->covers.sheen.any() ||
+                                lobes_->further->covers.coat.alpha >= least_alpha));
   }
   /// Whether some lobe transmits light to the other side.
   bool transmits() const {
-    return lobes_.kind == Lobes::Kind::layered &&
-           (lobes_.interface.glass > 0 || (lobes_.extended && !is_black(lobes_.diffuse_through)));
+    return lobes_->kind == Lobes::Kind::layered &&
+           (lobes_->interface.glass > 0 ||
+            (lobes_->further && !is_black(lobes_->further->diffuse_through)));
   }
   /// The medium that light crosses in direction `w`; null: none.
   const Medium* medium(const V3f& w) const {
-    return lobes_.medium != nullptr && dot(w, ng_) < 0 ? lobes_.medium : nullptr;
+    return lobes_->medium != nullptr && dot(w, ng_) < 0 ? lobes_->medium : nullptr;
   }
 
   /// Albedo, for the layer of that name: the sum of the lobes' reflectances.
@@ -202,7 +207,7 @@ class Bsdf {
 
   /// Whether the BSDF is a single symmetric Lambertian lobe: the fast path.
   bool plain_lambert(Transport transport) const {
-    return lobes_.kind == Lobes::Kind::lambert && (flat_ || transport == Transport::radiance);
+    return lobes_->kind == Lobes::Kind::lambert && (flat_ || transport == Transport::radiance);
   }
   float lambert(const V3f& wo, const V3f& wi) const {
     const float side = dot(wo, ng_);
@@ -216,7 +221,7 @@ class Bsdf {
     const V3f wi = sample_cosine(n, u);
     const float side_i = dot(wi, ng_);
     if (!(side > 0 ? side_i > 0 : side < 0 && side_i < 0)) return std::nullopt;
-    return BsdfSample{wi, lobes_.diffuse, Pdf<SolidAngle>(dot(wi, n) * inv_pi), false, false};
+    return BsdfSample{wi, lobes_->diffuse, Pdf<SolidAngle>(dot(wi, n) * inv_pi), false, false};
   }
 
   // Below, side = dot(w, ng).
@@ -233,7 +238,7 @@ class Bsdf {
   bool seen_with_ns(const V3f& w, float side) const {
     if (!in_front_of_ns(w, side)) return false;
     // Not for glass: light that enters it by ng could be reflected inside by ns forever.
-    if (flat_ || lobes_.kind != Lobes::Kind::layered || transmits()) return true;
+    if (flat_ || lobes_->kind != Lobes::Kind::layered || transmits()) return true;
     return dot(reflect(w, normal(true, side)), ng_) * side > 0;
   }
   /// The normal for cosines if the eye is in direction `w`.
@@ -247,14 +252,15 @@ class Bsdf {
 
   bool has_broad_extension() const;
   Facets facets(const V3f& n) const {
-    const float alpha = lobes_.interface.alpha;
-    return needs_tangents() ? Facets(n, alpha, lobes_.alpha_along, along_) : Facets(n, alpha);
+    const float alpha = lobes_->interface.alpha;
+    return needs_tangents() ? Facets(n, alpha, lobes_->further->alpha_along, along_)
+                            : Facets(n, alpha);
   }
   /// What the covers let through of direction `w`: all behind the surface of a solid, where its
   /// inside is, and without covers.
   Covers::Through let_through(const V3f& w, float cos) const {
-    const bool covered = lobes_.extended && (lobes_.interface.thin || dot(w, ng_) > 0);
-    return covered ? lobes_.covers.through(cos) : Covers::Through{};
+    const bool covered = lobes_->further && (lobes_->interface.thin || dot(w, ng_) > 0);
+    return covered ? lobes_->further->covers.through(cos) : Covers::Through{};
   }
 
   ShadingFrame shading_frame(const V3f& n, const V3f& wo) const;
@@ -304,7 +310,7 @@ class Bsdf {
   V3f ng_, ns_;
   bool flat_;           // ns equals ng, up to the rounding of an interpolated normal
   V3f along_{0, 0, 0};  // direction of the wider facets, if needs_tangents()
-  Lobes lobes_;
+  HeldLobes lobes_;
 };
 
 }  // namespace lacuna

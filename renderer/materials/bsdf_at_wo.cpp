@@ -9,14 +9,14 @@ BsdfAtWo::BsdfAtWo(const Bsdf& bsdf, const V3f& wo)
       side_(dot(wo, bsdf.ng_) < 0 ? -bsdf.ng_ : bsdf.ng_),
       n_(bsdf.eye_normal(wo, dot(wo, bsdf.ng_))),
       cos_o_(dot(wo, n_)),
-      diffuse_(bsdf.lobes_.diffuse * inv_pi),
-      layered_(bsdf.lobes_.kind == Lobes::Kind::layered),
-      layer_(bsdf.lobes_.layer),
+      diffuse_(bsdf.lobes_->diffuse * inv_pi),
+      layered_(bsdf.lobes_->kind == Lobes::Kind::layered),
+      layer_(bsdf.lobes_->layer),
       means_(layer_),
-      interface_(bsdf.lobes_.interface),
-      extended_(bsdf.lobes_.kind == Lobes::Kind::layered && bsdf.lobes_.extended ? &bsdf
-                                                                                 : nullptr) {
-  if (bsdf.lobes_.kind == Lobes::Kind::black || dot(wo, bsdf.ng_) == 0) factor = Rgb(0, 0, 0);
+      interface_(bsdf.lobes_->interface),
+      extended_(bsdf.lobes_->kind == Lobes::Kind::layered && bsdf.lobes_->further ? &bsdf
+                                                                                  : nullptr) {
+  if (bsdf.lobes_->kind == Lobes::Kind::black || dot(wo, bsdf.ng_) == 0) factor = Rgb(0, 0, 0);
   if (layered_) through_o_ = layer_.let_through(layer_.mean_weight(cos_o_));
 }
 

@@ -40,7 +40,7 @@ class BsdfAtWo {
   float through_o_ = 1;  // of the layer
   MeanWeights means_;
   Interface interface_;
-  const Bsdf* extended_;  // a BSDF with Lobes::extended; null: another
+  const Bsdf* extended_;  // a BSDF with Lobes::further; null: another
 };
 
 }  // namespace lacuna

@@ -20,19 +20,19 @@ V3f sample_hemisphere(const V3f& n, const V2f& u) {
 }  // namespace
 
 bool Bsdf::has_broad_extension() const {
-  const Covers& covers = lobes_.covers;
-  return !is_black(lobes_.diffuse_through) || covers.sheen.any() ||
+  const Covers& covers = lobes_->further->covers;
+  return !is_black(lobes_->further->diffuse_through) || covers.sheen.any() ||
          (covers.coat.any() && !covers.coat.smooth());
 }
 
 Bsdf::Choice Bsdf::choice(const ShadingFrame& from) const {
   Choice c;
-  if (!lobes_.facets_compete()) {
+  if (!lobes_->facets_compete()) {
     c.facets = 1;
     return c;
   }
   weigh_base(from, c);
-  if (!lobes_.extended) {
+  if (!lobes_->further) {
     const double sum = c.diffuse + c.facets + c.clear;
     if (!(sum > 0)) return {};
     c.diffuse /= sum;
@@ -48,7 +48,7 @@ Bsdf::Choice Bsdf::choice(const ShadingFrame& from) const {
 }
 
 void Bsdf::weigh_base(const ShadingFrame& from, Choice& c) const {
-  const Interface& interface = lobes_.interface;
+  const Interface& interface = lobes_->interface;
   if (interface.glass > 0 || interface.film.strength > 0) {
     const Interface::Split s = interface.split(from.cos_o, from.eta);
     c.facets = double(luminance(s.reflected));
@@ -63,13 +63,14 @@ void Bsdf::weigh_base(const ShadingFrame& from, Choice& c) const {
     const float r0 = luminance(interface.r0);
     c.facets = double(r0 + (interface.r90 - r0) * from.mean_weight);
   }
-  const float through_layer = lobes_.layer.let_through(from.mean_weight);
-  if (lobes_.has_diffuse()) c.diffuse = double(luminance(lobes_.diffuse) * through_layer);
-  if (lobes_.extended) c.through = double(luminance(lobes_.diffuse_through) * through_layer);
+  const float through_layer = lobes_->layer.let_through(from.mean_weight);
+  if (lobes_->has_diffuse()) c.diffuse = double(luminance(lobes_->diffuse) * through_layer);
+  if (lobes_->further)
+    c.through = double(luminance(lobes_->further->diffuse_through) * through_layer);
 }
 
 void Bsdf::add_covers(const ShadingFrame& from, Choice& c) const {
-  if (!lobes_.covers.any() || !(lobes_.interface.thin || from.front)) return;
+  if (!lobes_->further->covers.any() || !(lobes_->interface.thin || from.front)) return;
   for (double* p : {&c.diffuse, &c.through, &c.facets, &c.clear}) {
     *p *= double(from.through.both());
   }
@@ -79,10 +80,10 @@ void Bsdf::add_covers(const ShadingFrame& from, Choice& c) const {
 
 double Bsdf::delta_probability(const Choice& c, const Interface::Split& split,
                                bool transmitted) const {
-  if (transmitted && lobes_.interface.clear()) return c.clear;
-  if (!lobes_.interface.smooth()) return 0;
+  if (transmitted && lobes_->interface.clear()) return c.clear;
+  if (!lobes_->interface.smooth()) return 0;
   const FacetProbabilities coin =
-      lobes_.facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
+      lobes_->facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
   return c.facets * (transmitted ? coin.transmit : coin.reflect);
 }
 
@@ -91,18 +92,18 @@ Bsdf::DeltaSum Bsdf::delta_sum(const ShadingFrame& from, const Choice& c,
                                bool transmitted) const {
   DeltaSum sum{{0, 0, 0}, delta_probability(c, split, transmitted)};
   if (sum.p > 0) sum.value = transmitted ? split.transmitted : split.reflected;
-  if (!lobes_.extended) return sum;
+  if (!lobes_->further) return sum;
   const Covers::Through o = from.through, i = let_through(wi, abs_dot(wi, from.n));
   sum.value *= std::min(o.coat, i.coat) * std::min(o.sheen, i.sheen);
-  if (!transmitted && c.coat > 0 && lobes_.covers.coat.smooth()) {
+  if (!transmitted && c.coat > 0 && lobes_->further->covers.coat.smooth()) {
     sum.p += c.coat;
-    sum.value += Rgb(lobes_.covers.coat.reflectance(from.cos_o));
+    sum.value += Rgb(lobes_->further->covers.coat.reflectance(from.cos_o));
   }
   return sum;
 }
 
 std::optional<V3f> Bsdf::passed(const ShadingFrame& from, const V3f& wo, const V3f& m) const {
-  if (lobes_.interface.thin) {
+  if (lobes_->interface.thin) {
     if (m == from.n) return -wo;
     const V3f wr = reflect(wo, m);
     return wr - (2 * dot(wr, from.n)) * from.n;
@@ -118,7 +119,7 @@ std::optional<Bsdf::LobeSample> Bsdf::sample_lobe(const ShadingFrame& from, cons
   const V3f& n = from.n;
   if (u_lobe < c.diffuse) return LobeSample{sample_cosine(n, u)};
   u_lobe -= c.diffuse;
-  if (lobes_.extended) {
+  if (lobes_->further) {
     if (u_lobe < c.through) return LobeSample{sample_cosine(-n, u), true};
     u_lobe -= c.through;
     if (u_lobe < c.sheen) return LobeSample{sample_hemisphere(n, u)};
@@ -128,17 +129,17 @@ std::optional<Bsdf::LobeSample> Bsdf::sample_lobe(const ShadingFrame& from, cons
   }
   const bool clear = u_lobe < c.clear;
   if (!clear && c.facets == 0) return std::nullopt;
-  const bool smooth = clear || lobes_.interface.smooth();
+  const bool smooth = clear || lobes_->interface.smooth();
   const V3f m = smooth ? n : facets(n).sample_visible(wo, u);
   const float cos_m = dot(wo, m);
   if (cos_m <= 0) return std::nullopt;
-  const Interface::Split split = lobes_.interface.split(cos_m, from.eta);
+  const Interface::Split split = lobes_->interface.split(cos_m, from.eta);
   LobeSample result;
   if (clear) {
     result.transmitted = true;
   } else {
     const FacetProbabilities coin =
-        lobes_.facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
+        lobes_->facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
     result.transmitted = u_lobe - c.clear >= c.facets * coin.reflect;
   }
   if (result.transmitted) {
@@ -154,12 +155,13 @@ std::optional<Bsdf::LobeSample> Bsdf::sample_lobe(const ShadingFrame& from, cons
 
 Bsdf::LobeSample Bsdf::sample_coat(const ShadingFrame& from, const Choice& c, const V3f& wo,
                                    const V2f& u) const {
-  const Coat& coat = lobes_.covers.coat;
+  const Coat& coat = lobes_->further->covers.coat;
   if (!coat.smooth()) {
     return {reflect(wo, Facets(from.n, coat.alpha).sample_visible(wo, u))};
   }
   LobeSample result{reflect(wo, from.n)};
-  result.delta = delta_sum(from, c, lobes_.interface.split(from.cos_o, from.eta), result.wi, false);
+  result.delta =
+      delta_sum(from, c, lobes_->interface.split(from.cos_o, from.eta), result.wi, false);
   return result;
 }
 
@@ -171,7 +173,7 @@ float Bsdf::frame_probability(const V3f& w, const V3f& n) const {
 
 std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
   const float side = dot(wo, ng_);
-  if (lobes_.kind != Lobes::Kind::layered || side == 0) return std::nullopt;
+  if (lobes_->kind != Lobes::Kind::layered || side == 0) return std::nullopt;
   const V3f n = eye_normal(wo, side);
   const ShadingFrame from = shading_frame(n, wo);
   if (!(from.cos_o > 0)) return std::nullopt;
@@ -179,7 +181,7 @@ std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
   const std::optional<V3f> wi = transmitted ? passed(from, wo, n) : reflect(wo, n);
   if (!wi) return std::nullopt;
   lobe.wi = *wi;
-  const DeltaSum sum = delta_sum(from, choice(from), lobes_.interface.split(from.cos_o, from.eta),
+  const DeltaSum sum = delta_sum(from, choice(from), lobes_->interface.split(from.cos_o, from.eta),
                                  lobe.wi, transmitted);
   if (!(sum.p > 0)) return std::nullopt;
   lobe.p_radiance = sum.p;
@@ -192,7 +194,7 @@ std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
         double(from.cos_o) / (double(from.bend) * double(from.bend) * double(back.cos_o));
   }
   lobe.p_importance =
-      delta_sum(back, choice(back), lobes_.interface.split(back.cos_o, back.eta), wo, transmitted)
+      delta_sum(back, choice(back), lobes_->interface.split(back.cos_o, back.eta), wo, transmitted)
           .p *
       double(frame_probability(lobe.wi, n)) * lobe.jacobian;
   return lobe;
@@ -221,7 +223,7 @@ std::optional<BsdfSample> Bsdf::finish_delta(const LobeSample& drawn, const Shad
 std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, double u_lobe, const V2f& u,
                                            Transport transport) const {
   const float side = dot(wo, ng_);
-  if (lobes_.kind == Lobes::Kind::black || side == 0) return std::nullopt;
+  if (lobes_->kind == Lobes::Kind::black || side == 0) return std::nullopt;
   V3f n = eye_normal(wo, side);
   float frame_probability = 1;
   if (transport == Transport::importance && !flat_) {

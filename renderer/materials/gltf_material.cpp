@@ -67,11 +67,17 @@ void set_extensions(const Material& material, const Texels& texel, SurfaceParams
 
 }  // namespace
 
+bool is_lambertian(const Material& m) {
+  const MaterialExtensions& e = m.extensions;
+  return m.metallic == 0 && m.specular == 0 && m.transmission == 0 &&
+         e.diffuse_transmission.factor == 0 && e.coat.factor == 0 && is_black(e.sheen.color);
+}
+
 SurfaceParams surface_params(const Material& material, Textures textures,
                              const std::array<V2f, 2>& uv) {
   const Texels texel{textures, uv};
   SurfaceParams p;
-  p.base_color = material.base_color * texel(material.base_color_texture).rgb;
+  p.base_color = base_color(material, textures, uv);
   p.metallic = material.metallic;
   float roughness = material.roughness;
   if (material.metallic_roughness_texture.used()) {

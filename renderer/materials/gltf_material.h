@@ -16,6 +16,15 @@ inline Rgba texture_at(const TextureRef& ref, Textures textures, const std::arra
       ref.transform(uv[static_cast<std::size_t>(ref.uv_set)]));
 }
 
+/// The base colour at texture coordinates `uv` (TEXCOORD_0 and _1).
+inline Rgb base_color(const Material& material, Textures textures, const std::array<V2f, 2>& uv) {
+  const TextureRef& texture = material.base_color_texture;
+  return texture.used() ? material.base_color * texture_at(texture, textures, uv).rgb
+                        : material.base_color;
+}
+/// Whether the surface is Lambertian, with the albedo base_color(), whatever its textures hold.
+bool is_lambertian(const Material& material);
+
 /// The surface parameters at texture coordinates `uv` (TEXCOORD_0 and _1). The textures that
 /// `material` uses must be decoded. KHR_materials_ior and _specular determine f0 and f90; a surface
 /// with both 0 is Lambertian.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "renderer/core/vec.h"
 #include "renderer/geometry/medium.h"
@@ -32,6 +33,14 @@ struct SurfaceParams {
   ThinFilm film = {};
 };
 
+/// The lobes that few materials have.
+struct FurtherLobes {
+  Rgb diffuse_through{0, 0, 0};  ///< Lambert's lobe on the other side: share times colour
+  Covers covers;
+  float alpha_along = 0;  ///< as in SurfaceParams
+  V2f direction{1, 0};
+};
+
 /// The scattering of a surface without its normals. Computed once for all hits if the material has
 /// no textures.
 struct Lobes {
@@ -41,53 +50,57 @@ struct Lobes {
   Lobes(const SurfaceParams& params)
       : diffuse(((1 - params.metallic) * (1 - params.transmission)) * params.base_color) {
     if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0) ||
-        has_extensions(params)) {
+        has_further(params)) {
       add_interface(params);
     } else {
       kind = is_black(diffuse) ? Kind::black : Kind::lambert;
     }
   }
-  /// Every hit copies the lobes of its material: what most materials do not use is left out.
-  Lobes(const Lobes& o)
-      : diffuse(o.diffuse),
-        kind(o.kind),
-        extended(o.extended),
-        layer(o.layer),
-        interface(o.interface),
-        medium(o.medium) {
-    if (!extended) return;
-    diffuse_through = o.diffuse_through;
-    covers = o.covers;
-    alpha_along = o.alpha_along;
-    direction = o.direction;
-  }
-  Lobes& operator=(const Lobes&) = default;
+  /// A Lambertian surface.
+  explicit Lobes(const Rgb& albedo)
+      : diffuse(albedo), kind(is_black(albedo) ? Kind::black : Kind::lambert) {}
 
   bool has_diffuse() const { return !is_black(diffuse); }
   /// Whether other lobes than the facets must be sampled, too.
   bool facets_compete() const {
-    return has_diffuse() || (interface.glass > 0 && interface.clear()) || extended;
+    return has_diffuse() || (interface.glass > 0 && interface.clear()) || further;
   }
   bool facets_transmit() const { return interface.glass > 0 && !interface.clear(); }
 
   Rgb diffuse;  ///< share of Lambert times base colour
   Kind kind = Kind::layered;
-  bool extended = false;  ///< something below `medium` is used
-  Layer layer;            ///< used if facets_compete()
+  Layer layer;  ///< used if facets_compete()
   Interface interface;
   const Medium* medium = nullptr;  ///< behind the surface
-
-  Rgb diffuse_through{0, 0, 0};  ///< Lambert's lobe on the other side: share times colour
-  Covers covers;
-  float alpha_along = 0;  ///< as in SurfaceParams
-  V2f direction{1, 0};
+  std::optional<FurtherLobes> further;
 
  private:
-  static bool has_extensions(const SurfaceParams& p) {
+  static bool has_further(const SurfaceParams& p) {
     return p.coat > 0 || p.diffuse_transmission > 0 || !is_black(p.sheen_color);
   }
   void add_interface(const SurfaceParams& params);
-  void add_extensions(const SurfaceParams& params);
+  void add_further(const SurfaceParams& params);
+};
+
+/// The lobes at a hit: those of a uniform material, which all its hits share, or its own.
+class HeldLobes {
+ public:
+  explicit HeldLobes(const Lobes& shared) : lobes_(&shared) {}
+  template <class Surface>
+  explicit HeldLobes(const Surface& own) : lobes_(&own_.emplace(own)) {}
+  HeldLobes(const HeldLobes& o) : own_(o.own_), lobes_(own_ ? &*own_ : o.lobes_) {}
+  HeldLobes& operator=(const HeldLobes& o) {
+    own_ = o.own_;
+    lobes_ = own_ ? &*own_ : o.lobes_;
+    return *this;
+  }
+  ~HeldLobes() = default;
+
+  const Lobes* operator->() const { return lobes_; }
+
+ private:
+  std::optional<Lobes> own_;
+  const Lobes* lobes_;
 };
 
 }  // namespace lacuna

@@ -142,7 +142,8 @@ class Walk {
     }
   }
 
-  void on_hit(PathState& w, const Hit& hit) {
+  // Flattened: called at every vertex, and GCC no longer inlines all of it by itself.
+  [[gnu::flatten]] void on_hit(PathState& w, const Hit& hit) {
     const int depth = w.depth;
     Vertex& v = vertex(w, depth);
     v.delta = false;
@@ -221,7 +222,7 @@ class Walk {
   }
 
   /// Samples the next edge; false if the walk ends.
-  bool sample_next(PathState& w) {
+  [[gnu::flatten]] bool sample_next(PathState& w) {
     const int depth = w.depth;
     Vertex& v = vertex(w, depth);
     w.rng.next_vertex();

@@ -81,6 +81,12 @@ Rgb Scene::varying_emission(const Surface& s) const {
 }
 
 void Scene::make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) const {
+  if (lambertian_[s.material]) {
+    Rgb albedo = base_color(material(s), data_->textures, s.uv);
+    if (material(s).vertex_colors) albedo *= vertex_color(s);
+    place.emplace(albedo, s.ng, s.ns);
+    return;
+  }
   SurfaceParams params = surface_params(material(s), data_->textures, s.uv);
   if (material(s).vertex_colors) params.base_color *= vertex_color(s);
   place.emplace(params, s.ng, s.ns);
@@ -95,10 +101,12 @@ float Scene::blended_coverage(const Surface& s) const {
 
 void Scene::make_uniform_lobes() {
   uniform_lobes_.resize(data_->materials.size());
+  lambertian_.resize(data_->materials.size());
   for (std::size_t i = 0; i < data_->materials.size(); ++i) {
     const Material& m = data_->materials[i];
     bool varies = m.vertex_colors;
     m.for_each_scattering_texture([&](const TextureRef&) { varies = true; });
+    lambertian_[i] = is_lambertian(m);
     if (!varies) uniform_lobes_[i] = surface_params(m, {}, {});
   }
 }

@@ -126,6 +126,7 @@ class Scene {
   TriangleTable triangles_;
   std::vector<std::optional<Lobes>>
       uniform_lobes_;  // of each material; none if its scattering varies over its surfaces
+  std::vector<std::uint8_t> lambertian_;  // of each material: whether it is_lambertian()
   RayCaster rays_;
   std::unique_ptr<EmitterSet> emitters_;
 };
