@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 
 #include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
@@ -61,7 +60,7 @@ void import_scene(const std::filesystem::path& file, std::filesystem::path out,
 void add_import(CLI::App& app, int& code) {
   const auto file = std::make_shared<std::filesystem::path>();
   const auto out = std::make_shared<std::filesystem::path>();
-  const auto missing = std::make_shared<MissingFiles>(MissingFiles::refuse);
+  const auto missing = std::make_shared<std::string>("refuse");
   CLI::App* command = app.add_subcommand(
       "import",
       "Write a scene of another renderer as glTF with a job: DIR/scene.glb, its textures, "
@@ -79,10 +78,10 @@ void add_import(CLI::App& app, int& code) {
       ->add_option("--missing", *missing,
                    "what to do about meshes and textures that do not exist: refuse, or skip (leave "
                    "them out, each with a line)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, MissingFiles>{
-          {"refuse", MissingFiles::refuse}, {"skip", MissingFiles::skip}}));
+      ->check(CLI::IsMember({"refuse", "skip"}))
+      ->capture_default_str();
   command->callback([file, out, missing, &code] {
-    import_scene(*file, *out, *missing);
+    import_scene(*file, *out, *missing == "skip" ? MissingFiles::skip : MissingFiles::refuse);
     code = exit_done;
   });
 }

@@ -61,7 +61,7 @@ struct ImportedMaterial {
   bool one_sided = false;  ///< the back is black
   ImportedValue diffuse{{0.5F, 0.5F, 0.5F}, nullptr};
   bool vertex_colors = false;  ///< the colours of its meshes are meant; else they have none
-  double sigma = 0;  ///< of Oren-Nayar's facets, radians
+  double sigma = 0;            ///< of Oren-Nayar's facets, radians
 
   bool beckmann = false;
   std::array<double, 2> alpha{0, 0};  ///< along u and across; 0: smooth

@@ -84,6 +84,7 @@ struct ImportedPicture {
   std::optional<std::array<int, 2>> crop_from;  ///< of `resolution`, in pixels from the upper left
   std::array<int, 2> crop_size{0, 0};
   std::optional<int> max_depth;  ///< path edges; none: the file sets no limit
+  bool tent_filter = false;      ///< of pixels, to the centres of their neighbours; else a box
 };
 
 /// A part of the file that the result does not represent exactly.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -56,8 +57,10 @@ void write_job_of(const ImportedScene& scene, const std::optional<WrittenEnviron
   } else {
     job["resolution"] = picture.resolution;
   }
+  if (picture.tent_filter) job["pixel_filter"] = "tent";
   job["integrator"] = {{"type", "path"}};
-  if (picture.max_depth) job["integrator"]["max_depth"] = *picture.max_depth;
+  constexpr int no_limit = 1024;  // the largest that a job allows
+  job["integrator"]["max_depth"] = std::min(no_limit, picture.max_depth.value_or(no_limit));
   if (environment) {
     job["environment"] = {{"file", fmt::format("{}/{}", name, environment->file)}};
     if (environment->scale != 1) job["environment"]["scale"] = environment->scale;

@@ -38,9 +38,12 @@ ImportedPicture picture_of(ReadContext& context, const Parameters& sensor) {
   }
   for (const SceneElement* filter : p.objects("rfilter")) {
     const Parameters f = context.parameters(*filter);
+    picture.tent_filter = filter->type() == "tent" && f.number("radius", 1) == 1;
+    const bool box = filter->type() == "box" && f.number("radius", .5) == .5;
     f.ignore_all();
-    if (filter->type() == "box") continue;
-    context.note(*filter, "left out", "the job's pixel_filter is box; it can be tent");
+    if (!box && !picture.tent_filter) {
+      context.note(*filter, "left out", "the job's pixel_filter is a box; it can be a tent");
+    }
   }
   p.ignore_all();
   return picture;
