@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "jobs/import/spot_cone.h"
+
 namespace lacuna::mitsuba {
 namespace {
 
@@ -52,12 +54,15 @@ void add_light(ReadContext& context, const Parameters& p, ImportedScene& scene) 
     if (!(cutoff > 0 && cutoff <= 90 && beam >= 0 && beam <= cutoff)) {
       p.element().fail("allowed: a cutoffAngle above 0, at most 90, and a beamWidth up to that");
     }
-    light.inner_cone = beam * degree;
-    light.outer_cone = cutoff * degree;
+    const double inner = beam * degree, outer = cutoff * degree;
+    light.inner_cone = inner;
+    light.outer_cone = outer;
     if (beam < cutoff) {
+      // Linear in the angle: the integral of (outer - t) / (outer - inner) sin t.
+      const double flux = 1 - (std::sin(outer) - std::sin(inner)) / (outer - inner);
+      light.inner_cone = spot_inner_cone(flux, std::cos(outer));
       context.note(p.element(), "approximated",
-                   "between its cones light falls off as glTF says, where Mitsuba's falls off "
-                   "linearly with the angle");
+                   "glTF's fall-off towards the rim, of the same flux");
     }
   }
   scene.lights.push_back(light);

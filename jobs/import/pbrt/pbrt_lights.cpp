@@ -8,6 +8,7 @@
 
 #include "jobs/import/pbrt/pbrt_colours.h"
 #include "jobs/import/pbrt/pbrt_textures.h"
+#include "jobs/import/spot_cone.h"
 
 namespace lacuna::pbrt {
 namespace {
@@ -64,7 +65,7 @@ void spot_light(const LightStatement& s, ImportedScene& scene, const M44d& to_wo
   const double end = std::cos(angle), start = std::cos(std::max(angle - ramp, 0.0));
   const double flux = (1 - start) + (start - end) * (s.context.is_v3() ? 0.2 : 0.5);
   light.outer_cone = angle;
-  light.inner_cone = std::acos(std::clamp(1.5 * (1 - flux) - end / 2, end, 1.0));
+  light.inner_cone = spot_inner_cone(flux, end);
   light.intensity = s.scaled("I") * s.photometric("power", 2 * std::numbers::pi *
                                                                ((1 - start) + (start - end) / 2));
   const V3d from = s.p.point("from", V3d(0, 0, 0)), to = s.p.point("to", V3d(0, 0, 1));

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -167,6 +168,54 @@ TEST(MitsubaScene, NotesParametersThatItDoesNotRead) {
   EXPECT_EQ(scene.notes[0].place, "scene.xml:3");
   EXPECT_EQ(scene.notes[0].treatment, "left out");
   EXPECT_EQ(scene.notes[0].how, "its float \"shine\" is not read (and 1 more of its kind)");
+}
+
+/// Numerically: Mitsuba's intensity is 1 within the beam and falls linearly with the angle to 0 at
+/// the cutoff; glTF's falls as the square of a ramp of the cosine.
+TEST(MitsubaScene, SpotsKeepTheirFlux) {
+  const ImportedScene scene = read_mitsuba_text(
+      "<scene version='0.6.0'><emitter type='spot'><float name='cutoffAngle' value='40'/><float "
+      "name='beamWidth' value='10'/></emitter></scene>");
+  ASSERT_EQ(scene.lights.size(), 1U);
+  const double rim = std::cos(scene.lights[0].outer_cone),
+               inner = std::cos(scene.lights[0].inner_cone);
+  double theirs = 0, ours = 0;
+  constexpr int steps = 20000;
+  for (int i = 0; i < steps; ++i) {
+    const double degrees = 40 * (i + .5) / steps, t = degrees * std::numbers::pi / 180;
+    const double ramp = std::clamp((std::cos(t) - rim) / (inner - rim), 0.0, 1.0);
+    theirs += std::sin(t) * std::min(1.0, (40 - degrees) / 30);
+    ours += std::sin(t) * ramp * ramp;
+  }
+  EXPECT_NEAR(ours / theirs, 1, 1e-5);
+  EXPECT_EQ(scene.lights[0].direction, V3d(0, 0, 1));
+}
+
+double yfov_of(const std::string& sensor) {
+  const ImportedScene scene = read_mitsuba_text(
+      "<scene version='0.6.0'><sensor type='perspective'>" + sensor +
+      "<film type='hdrfilm'><integer name='width' value='200'/><integer name='height' "
+      "value='100'/></film></sensor></scene>");
+  return 2 * std::atan(std::tan(scene.cameras.at(0).yfov / 2)) * 180 / std::numbers::pi;
+}
+
+TEST(MitsubaScene, FieldsOfViewByAxisAndFocalLength) {
+  const auto along = [](const char* axis) {
+    return yfov_of(std::string("<float name='fov' value='50'/><string name='fovAxis' value='") +
+                   axis + "'/>");
+  };
+  const double half = std::tan(25 * std::numbers::pi / 180);
+  const auto degrees = [](double tangent) {
+    return 2 * std::atan(tangent) * 180 / std::numbers::pi;
+  };
+  EXPECT_NEAR(along("y"), 50, 1e-9);
+  EXPECT_NEAR(along("smaller"), 50, 1e-9);
+  EXPECT_NEAR(along("x"), degrees(half / 2), 1e-9);
+  EXPECT_NEAR(along("larger"), degrees(half / 2), 1e-9);
+  EXPECT_NEAR(along("diagonal"), degrees(half / std::sqrt(5)), 1e-9);
+  // A film of 36 x 24 mm has a diagonal of 43.27 mm.
+  EXPECT_NEAR(yfov_of("<string name='focalLength' value='35mm'/>"),
+              degrees(43.2666 / 70 / std::sqrt(5)), 1e-4);
 }
 
 }  // namespace
