@@ -55,7 +55,7 @@ void Materials::read_blend(const Parameters& p, ImportedMaterial& m) {
   const ImportedValue weight = color(p, "weight", .5F);
   m.type = ImportedMaterial::Type::mixture;
   m.one_sided = false;
-  const float w = std::clamp(luminance(weight.value), 0.0F, 1.0F);
+  const float w = std::clamp(static_cast<float>(grey_of(weight.value)), 0.0F, 1.0F);
   m.parts = {{parts[0], Rgb(weight.texture ? 1 : 1 - w)}, {parts[1], Rgb(w)}};
   m.weight_texture = weight.texture;
   if (weight.texture) {
@@ -116,7 +116,7 @@ void Materials::read_bump_map(const Parameters& p, ImportedMaterial& m) {
   m = *inner(p, 1, 1)[0];
   const ImportedValue map = map_within(p);
   m.bump_map = map.texture;
-  m.bump_scale = double(luminance(map.value)) * p.number("scale", 1);
+  m.bump_scale = grey_of(map.value) * p.number("scale", 1);
   if (!m.bump_map) context_.note(p.element(), "left out", "its map is no picture");
 }
 

@@ -145,14 +145,14 @@ void Materials::read_facets(const Parameters& p, ImportedMaterial& m, bool rough
   }
   p.ignore({"samplevisible"});
   const TexturedValue alpha = textures_.value(p, "alpha", Rgb(.1F));
-  const double both = double(luminance(alpha.value.value));
+  const double both = grey_of(alpha.value.value);
   m.alpha = {both, both};
   m.alpha_texture = alpha.value.texture;
   for (const int i : {0, 1}) {
     const char* name = i == 0 ? "alphau" : "alphav";
     if (!p.has(name)) continue;
     const TexturedValue along = textures_.value(p, name, Rgb(.1F));
-    m.alpha[static_cast<std::size_t>(i)] = double(luminance(along.value.value));
+    m.alpha[static_cast<std::size_t>(i)] = grey_of(along.value.value);
     if (along.value.texture) m.alpha_texture = along.value.texture;
   }
   for (double& a : m.alpha) {
@@ -171,7 +171,7 @@ void Materials::read_diffuse(const Parameters& p, ImportedMaterial& m) {
   if (alpha.texture) {
     context_.note(p.element(), "left out", "the texture of its alpha");
   }
-  m.sigma = double(luminance(alpha.value)) / std::numbers::sqrt2;
+  m.sigma = grey_of(alpha.value) / std::numbers::sqrt2;
   if (p.boolean("usefastapprox", false)) {
     context_.note(p.element(), "approximated",
                   "Oren and Nayar's full form stands for their fast approximation");
@@ -236,7 +236,7 @@ void Materials::read_phong(const Parameters& p, ImportedMaterial& m) {
   m.reflectance = color(p, "specularreflectance", .2F);
   const ImportedValue exponent = color(p, "exponent", 30);
   if (exponent.texture) context_.note(p.element(), "left out", "the texture of its exponent");
-  m.exponent = double(luminance(exponent.value));
+  m.exponent = grey_of(exponent.value);
   if (!(m.exponent >= 0)) p.element().fail("has a negative exponent");
 }
 

@@ -112,7 +112,7 @@ double Parameters::number(std::string_view name, double fallback) const {
     found->fail(
         fmt::format("is {} of {}; allowed: <float>", in_quotes(found->tag), element_.label()));
   }
-  return double(luminance(*color));
+  return grey_of(*color);
 }
 
 int Parameters::integer(std::string_view name, int fallback) const {

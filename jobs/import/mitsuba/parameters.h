@@ -68,6 +68,10 @@ class Parameters {
 
 /// The colour of a value element (rgb, srgb, spectrum, blackbody, float); none for other elements.
 std::optional<Rgb> color_of(const SceneElement& value);
+/// A number that was given as a colour: any component of grey, else the luminance.
+inline double grey_of(const Rgb& c) {
+  return double(c.x == c.y && c.y == c.z ? c.x : luminance(c));
+}
 /// The matrix of a `transform`, in Imath's convention.
 M44d transform_of(const SceneElement& transform);
 /// Numbers separated by blanks and commas; at most `most`. Throws SceneError with the element.
