@@ -27,6 +27,14 @@ ImportedMesh turned_over(const ImportedMesh& mesh) {
   return out;
 }
 
+bool is_textured(const ImportedMaterial& m) {
+  const bool own = m.diffuse.texture || m.reflectance.texture || m.transmittance.texture ||
+                   m.opacity.texture || m.alpha_texture || m.weight_texture || m.normal_map ||
+                   m.bump_map;
+  return own || std::any_of(m.parts.begin(), m.parts.end(),
+                            [](const auto& part) { return is_textured(*part.material); });
+}
+
 class SceneWriter {
  public:
   SceneWriter(const ImportedScene& scene, const std::filesystem::path& folder,
@@ -72,11 +80,21 @@ class SceneWriter {
     return normals;
   }
 
+  /// Textures of a mesh without coordinates show their upper left corner only.
+  void note_lacking_uvs(const ImportedShape& shape) {
+    const bool textured =
+        is_textured(*shape.material) || (shape.radiance && shape.radiance->texture);
+    if (!shape.mesh->uvs.empty() || !textured) return;
+    notes_.push_back({shape.place, shape.name.empty() ? shape.mesh->name : shape.name,
+                      "approximated", "it has textures and no texture coordinates"});
+  }
+
   void add(const ImportedShape& shape) {
     if (shape.mesh->triangles.empty()) {
       notes_.push_back({shape.place, shape.name, "left out", "it has no triangles"});
       return;
     }
+    note_lacking_uvs(shape);
     const std::size_t material =
         materials_.index(shape.material, shape.radiance, shape.emits_behind);
     const auto [found, added] = meshes_.try_emplace({shape.mesh.get(), shape.flipped, material}, 0);

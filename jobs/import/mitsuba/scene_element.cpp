@@ -83,6 +83,7 @@ class SceneFileReader {
     for (const pugi::xml_attribute& a : node.attributes()) {
       e.attributes.emplace_back(a.name(), replaced(a.value(), e));
     }
+    if (e.tag == "spectrum" && e.has("filename")) read_spectrum(e);
     for (const pugi::xml_node& child : node.children()) {
       if (child.type() == pugi::node_pcdata) e.fail("has text in it; allowed: elements");
       if (child.type() != pugi::node_element) continue;
@@ -113,6 +114,27 @@ class SceneFileReader {
     SceneElement root = read_file_at(canonical);
     open_.pop_back();
     std::move(root.children.begin(), root.children.end(), std::back_inserter(into));
+  }
+
+  /// A spectrum that is a file: lines of wavelength and value, which become its `value`.
+  void read_spectrum(SceneElement& at) {
+    if (folder_.empty()) at.fail("names a file; allowed: a scene without");
+    constexpr std::size_t most_bytes = 1 << 20;
+    std::string text;
+    try {
+      text = read_file(file_within(folder_, at.attribute("filename"), at), most_bytes);
+    } catch (const std::exception& e) {
+      at.fail(fmt::format("cannot be read: {}", e.what()));
+    }
+    std::string values;
+    for (std::size_t from = 0; from < text.size();) {
+      const std::size_t end = std::min(text.find('\n', from), text.size());
+      const std::string line = text.substr(from, std::min(text.find('#', from), end) - from);
+      from = end + 1;
+      if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+      values += fmt::format("{}:", line);  // any separator does
+    }
+    at.attributes.emplace_back("value", values);
   }
 
   /// Replaces `$name`, the longest names first. A `$` of no parameter is an error.

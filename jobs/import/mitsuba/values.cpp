@@ -35,21 +35,46 @@ Rgb rgb_of_hex(const SceneElement& at, const std::string& text) {
   return rgb;
 }
 
-/// `400:0.1, 500:0.2`.
-Rgb rgb_of_list(const SceneElement& at, std::string text) {
-  std::replace(text.begin(), text.end(), ':', ' ');
-  const auto n = numbers_in(at, text, 1 << 16);
-  if (n.size() % 2 != 0) at.fail("allowed: pairs of wavelength:value");
+Rgb rgb_of_pairs(const SceneElement& at, const std::vector<double>& wavelengths,
+                 const std::vector<double>& values) {
+  if (wavelengths.size() != values.size()) at.fail("allowed: pairs of wavelength and value");
   Spectrum spectrum;
-  for (std::size_t i = 0; i < n.size(); i += 2) {
-    if (!spectrum.empty() && !(n[i] > spectrum.back().first)) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!spectrum.empty() && !(wavelengths[i] > spectrum.back().first)) {
       at.fail("allowed: wavelengths that grow");
     }
-    spectrum.emplace_back(n[i], n[i + 1]);
+    spectrum.emplace_back(wavelengths[i], values[i]);
   }
   Rgb rgb = rgb_of_spectrum(spectrum, EqualEnergy::coloured);
   for (int c = 0; c < 3; ++c) rgb[c] = std::max(0.0F, rgb[c]);
   return rgb;
+}
+
+constexpr std::size_t most_samples = 1 << 16;
+
+/// `400:0.1, 500:0.2`.
+Rgb rgb_of_list(const SceneElement& at, std::string text) {
+  std::replace(text.begin(), text.end(), ':', ' ');
+  const auto n = numbers_in(at, text, 2 * most_samples);
+  if (n.size() % 2 != 0) at.fail("allowed: pairs of wavelength:value");
+  std::vector<double> wavelengths, values;
+  for (std::size_t i = 0; i < n.size(); ++i) (i % 2 == 0 ? wavelengths : values).push_back(n[i]);
+  return rgb_of_pairs(at, wavelengths, values);
+}
+
+/// The value of a child of a spectrum plugin, by its plain name.
+const std::string* child_value(const SceneElement& e, std::string_view name) {
+  for (const SceneElement& child : e.children) {
+    if (child.name() != name) continue;
+    child.read = true;
+    return &child.attribute("value");
+  }
+  return nullptr;
+}
+
+double child_number(const SceneElement& e, std::string_view name, double fallback) {
+  const std::string* text = child_value(e, name);
+  return text == nullptr ? fallback : number_in(e, *text);
 }
 
 Rgb rgb_of_blackbody(const SceneElement& e) {
@@ -59,6 +84,38 @@ Rgb rgb_of_blackbody(const SceneElement& e) {
   if (!(temperature > 0 && temperature <= 1e6)) e.fail("allowed: above 0, at most 1e6 kelvin");
   const double scale = e.has("scale") ? number_in(e, e.attribute("scale")) : 1;
   return blackbody_rgb(temperature) * static_cast<float>(scale);
+}
+
+/// The spectra of Mitsuba 3 that are plugins, in its RGB mode: d65 is white.
+Rgb rgb_of_plugin(const SceneElement& e) {
+  const std::string& type = e.type();
+  if (type == "d65") return Rgb(static_cast<float>(child_number(e, "scale", 1)));
+  if (type == "uniform") return Rgb(static_cast<float>(child_number(e, "value", 1)));
+  if (type == "blackbody") {
+    const double kelvin = child_number(e, "temperature", 5000);
+    if (!(kelvin > 0 && kelvin <= 1e6)) e.fail("allowed: above 0, at most 1e6 kelvin");
+    return blackbody_rgb(kelvin) * static_cast<float>(child_number(e, "scale", 1));
+  }
+  const std::string* values = child_value(e, "values");
+  if ((type != "regular" && type != "irregular") || values == nullptr) {
+    e.fail(
+        "is a spectrum that is not read; allowed: d65, uniform, blackbody, regular and irregular "
+        "with values");
+  }
+  const auto samples = numbers_in(e, *values, most_samples);
+  std::vector<double> wavelengths;
+  if (type == "irregular") {
+    const std::string* at = child_value(e, "wavelengths");
+    wavelengths = numbers_in(e, at == nullptr ? "" : *at, most_samples);
+  } else {
+    const double from = child_number(e, "wavelengthmin", 360),
+                 to = child_number(e, "wavelengthmax", 830);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double t = samples.size() < 2 ? 0 : static_cast<double>(i) / (samples.size() - 1.0);
+      wavelengths.push_back(from + (to - from) * t);
+    }
+  }
+  return rgb_of_pairs(e, wavelengths, samples);
 }
 
 V3d axes_of(const SceneElement& e, double fallback) {
@@ -143,8 +200,7 @@ std::optional<Rgb> color_of(const SceneElement& e) {
   if (e.tag == "blackbody") return rgb_of_blackbody(e);
   const bool spectrum = e.tag == "spectrum" || e.tag == "color";
   if (e.tag != "rgb" && e.tag != "srgb" && !spectrum) return {};
-  if (e.has("filename")) e.fail("is a file, which is not read; allowed: its values");
-  if (!e.type().empty()) e.fail("is a plugin, which is not read; allowed: values");
+  if (!e.type().empty()) return rgb_of_plugin(e);
   if (e.has("intent")) e.read = true;
   if (text.starts_with('#')) return rgb_of_hex(e, text);
   if (spectrum && text.find(':') != std::string::npos) return rgb_of_list(e, text);

@@ -108,6 +108,32 @@ TEST(MitsubaFiles, FrontIsWhereNormalsPoint) {
   EXPECT_EQ(mesh.normals[0], V3f(0, 0, -1));
 }
 
+TEST(MitsubaFiles, SpectraOfFilesAndOfPlugins) {
+  const TemporaryFolder folder;
+  folder.write("eta.spd", std::string("# a metal\n 400 1.5\n500 2 # mid\n\n700 3\n"));
+  const auto radiance = [&](const std::string& spectrum) {
+    const auto file = folder.write(
+        "scene.xml", "<scene version='3.0.0'><shape type='cube'><emitter type='area'>" + spectrum +
+                         "</emitter></shape></scene>");
+    return read_mitsuba(file, MissingFiles::refuse).shapes.at(0).radiance->value;
+  };
+  const Rgb list = radiance("<spectrum name='radiance' value='400:1.5, 500:2, 700:3'/>");
+  EXPECT_GT(list.x, list.z);
+  EXPECT_EQ(radiance("<spectrum name='radiance' filename='eta.spd'/>"), list);
+  EXPECT_EQ(radiance("<spectrum name='radiance' type='irregular'><string name='wavelengths' "
+                     "value='400, 500, 700'/><string name='values' value='1.5, 2, 3'/></spectrum>"),
+            list);
+  EXPECT_EQ(radiance("<spectrum name='radiance' type='d65'><float name='scale' "
+                     "value='3'/></spectrum>"),
+            Rgb(3));
+  EXPECT_EQ(radiance("<blackbody name='radiance' temperature='4000K' scale='2'/>"),
+            radiance("<spectrum name='radiance' type='blackbody'><float name='temperature' "
+                     "value='4000'/><float name='scale' value='2'/></spectrum>"));
+  EXPECT_TRUE(contains(
+      message_of<SceneError>([&] { radiance("<spectrum name='radiance' filename='x.spd'/>"); }),
+      "spectrum \"radiance\" cannot be read"));
+}
+
 constexpr const char* named_files = R"(<scene version="0.6.0"><sensor type="orthographic"/>
   <shape type="obj"><string name="filename" value="there.obj"/>
     <bsdf type="diffuse"><texture type="bitmap" name="reflectance">
