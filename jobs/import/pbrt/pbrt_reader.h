@@ -36,6 +36,7 @@ class Reader {
   /// A shape in pbrt's coordinates. Its material may be defined later.
   struct Shape {
     ImportedShape shape;
+    Place place;
     std::shared_ptr<const MaterialEntry> material;
     std::optional<ImportedValue> alpha;
   };

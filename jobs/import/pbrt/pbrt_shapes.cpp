@@ -48,6 +48,17 @@ void turn_to_normals(ImportedMesh& mesh) {
   }
 }
 
+bool has_mirrored_uvs(const ImportedMesh& mesh, bool flipped) {
+  if (mesh.uvs.empty()) return false;
+  double right = 0, left = 0;
+  for (const auto& t : mesh.triangles) {
+    const V2f a = mesh.uvs[t[1]] - mesh.uvs[t[0]], b = mesh.uvs[t[2]] - mesh.uvs[t[0]];
+    const double area = double(a.x) * double(b.y) - double(a.y) * double(b.x);
+    (area > 0 ? right : left) += std::abs(area);
+  }
+  return flipped ? right > left : left > right;
+}
+
 Areas areas_of(const ImportedMesh& mesh, const M44d& to_world) {
   Areas out;
   for (const auto& t : mesh.triangles) {

@@ -48,6 +48,10 @@ class ShapeReader {
 /// what is in front. Does nothing without normals.
 void turn_to_normals(ImportedMesh& mesh);
 
+/// Whether u, v and the front's normal are a left-handed frame on most of the mesh. pbrt-v4's
+/// second axis of normal maps is n x dp/du, glTF's follows v.
+bool has_mirrored_uvs(const ImportedMesh& mesh, bool flipped);
+
 /// Smallest, largest and total area of the triangles behind the transform.
 struct Areas {
   double least = 0, most = 0, total = 0;

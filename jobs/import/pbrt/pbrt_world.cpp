@@ -91,6 +91,7 @@ void Reader::shape(const Place& place) {
   Shape out;
   out.shape.name = s.type;
   out.shape.place = place.text();
+  out.place = place;
   out.shape.mesh = geometry->mesh;
   out.shape.to_world = geometry->to_object * state_.ctm.start();
   out.shape.flipped = geometry->flipped;
@@ -177,6 +178,10 @@ ImportedScene Reader::finish() {
     if (s.material->invisible && !s.shape.radiance) continue;
     if (s.shape.radiance) s.shape.radiance->value *= view.exposure;
     s.shape.material = material_of(s);
+    if (s.shape.material->normal_map && has_mirrored_uvs(*s.shape.mesh, s.shape.flipped)) {
+      context_.approximated(s.place, s.material->material->name,
+                            "a normal map on mirrored texture coordinates is turned about u");
+    }
     s.shape.to_world = s.shape.to_world * mirror;
     scene_.shapes.push_back(std::move(s.shape));
   }

@@ -177,6 +177,22 @@ TEST(PbrtTextures, BumpAndNormalMapsAndOpacity) {
   EXPECT_EQ(scene.shapes[0].material, scene.shapes[3].material);
 }
 
+/// The second axis of pbrt's normal maps is n x dp/du, whatever v does.
+TEST(PbrtTextures, NormalMapsOfMirroredTextureCoordinates) {
+  const PbrtFolder folder;
+  folder.write("a.png", "");
+  const auto notes = [&](const std::string& before, const std::string& uv) {
+    return noted(folder.import(
+        v4_film + "WorldBegin Material \"diffuse\" \"string normalmap\" \"a.png\" " + before +
+        " Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" "
+        "[0 1 2] \"point2 uv\" [" +
+        uv + "]"));
+  };
+  EXPECT_EQ(notes("", "0 0 1 0 0 1"), "");
+  EXPECT_NE(notes("", "0 1 1 1 0 0"), "");
+  EXPECT_EQ(notes("ReverseOrientation", "0 1 1 1 0 0"), "");
+}
+
 /// Plastic is a mixture, whose parts have the bumps.
 TEST(PbrtTextures, BumpMapsOfLobes) {
   const PbrtFolder folder;
