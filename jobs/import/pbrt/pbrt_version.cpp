@@ -34,26 +34,26 @@ std::optional<Version> of_material(std::string_view type) {
 
 std::optional<Version> find_version(const std::filesystem::path& file) {
   Tokens tokens(file);
-  std::string_view before, statement;
+  std::string_view statement;
+  int texts = 0;         // since the statement
   bool is_type = false;  // of a material: the value after "string type"
   while (const auto token = tokens.next()) {
-    if (token->kind == Token::Kind::word) {
+    if (token->kind == Token::Kind::word && !number_of(token->text)) {
       statement = token->text;
+      texts = 0;
       if (contains<4>({"Option", "ColorSpace", "Attribute", "Import"}, statement))
         return Version::v4;
-      before = statement;
-      continue;
     }
     if (token->kind != Token::Kind::text) continue;
+    ++texts;
     std::optional<Version> found;
-    if (before == "Film") found = of_film(token->text);
-    if (before == "Material" || (statement == "MakeNamedMaterial" && is_type)) {
+    if (statement == "Film" && texts == 1) found = of_film(token->text);
+    if ((statement == "Material" && texts == 1) || (statement == "MakeNamedMaterial" && is_type)) {
       found = of_material(token->text);
     }
-    if (statement == "Texture" && token->text == "color") found = Version::v3;
+    if (statement == "Texture" && texts == 2 && token->text == "color") found = Version::v3;
     if (found) return found;
     is_type = token->text == "string type";
-    before = token->text;
   }
   return {};
 }

@@ -272,6 +272,10 @@ TEST(PbrtMaterials, TheVersionIsThatOfTheFirstStatementThatTells) {
   EXPECT_NEAR(alpha("", "metal"), .46174, 1e-4);
   EXPECT_NEAR(alpha("", "conductor"), std::sqrt(.1), 1e-6);
   EXPECT_NEAR(alpha("Option \"bool x\" true ", "metal"), std::sqrt(.1), 1e-6);
+  // "color" as a type of textures, not as a name.
+  EXPECT_NEAR(alpha("Texture \"c\" \"color\" \"constant\" ", "conductor"), .46174, 1e-4);
+  EXPECT_NEAR(alpha("Texture \"color\" \"spectrum\" \"constant\" ", "conductor"), std::sqrt(.1),
+              1e-6);
   EXPECT_NE(noted(PbrtFolder().import("WorldBegin")).find("nothing in it tells"),
             std::string::npos);
 }
