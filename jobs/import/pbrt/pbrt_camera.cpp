@@ -222,6 +222,7 @@ View read_view(Context& context, const RenderOptions& options) {
   if (!context.is_v3() && close > open) view.exposure *= static_cast<float>(close - open);
   context.note_unused(p);
   view.picture.max_depth = read_depth(context, options);
+  view.picture.tent_filter = options.tent_filter;
   return view;
 }
 

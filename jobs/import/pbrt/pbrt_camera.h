@@ -17,6 +17,7 @@ struct Statement {
 struct RenderOptions {
   std::optional<Statement> camera, film, integrator;
   M44d world_from_camera;
+  bool tent_filter = false;
 };
 
 /// What the options make of the scene.

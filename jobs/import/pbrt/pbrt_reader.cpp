@@ -125,8 +125,7 @@ bool Reader::option_statement(std::string_view name, const Place& place) {
   } else if (name == "Sampler" || name == "Accelerator") {
     typed_statement(name, place);  // no part of the picture that a render converges to
   } else if (name == "PixelFilter") {
-    const Statement filter = typed_statement(name, place);
-    context_.left_out(place, filter.parameters.owner(), "the job's own filter is used");
+    pixel_filter(typed_statement(name, place));
   } else if (name == "ColorSpace") {
     state_.colours = colour_space(text(place, "a colour space"), place);
   } else if (name == "Option") {
@@ -139,6 +138,18 @@ bool Reader::option_statement(std::string_view name, const Place& place) {
     return false;
   }
   return true;
+}
+
+void Reader::pixel_filter(const Statement& filter) {
+  const Parameters& p = filter.parameters;
+  const double otherwise = filter.type == "box" ? 0.5 : 2;
+  const double x = p.number("xradius", p.number("xwidth", otherwise));
+  const double y = p.number("yradius", p.number("ywidth", otherwise));
+  options_.tent_filter = filter.type == "triangle" && x == 1 && y == 1;
+  const bool box = filter.type == "box" && x == 0.5 && y == 0.5;
+  if (!box && !options_.tent_filter) {
+    context_.left_out(p.place(), p.owner(), "the job's pixel_filter is a box; it can be a tent");
+  }
 }
 
 bool Reader::world_statement(std::string_view name, const Place& place) {

@@ -62,6 +62,7 @@ class Reader {
   bool world_statement(std::string_view name, const Place& place);
   bool coordinate_statement(std::string_view name, const Place& place);
 
+  void pixel_filter(const Statement& filter);
   void push(Scope scope, const Place& place);
   void pop(Scope scope, const Place& place);
   void include(const Place& place, bool import);

@@ -117,6 +117,17 @@ TEST(PbrtCamera, DepthCountsEdges) {
   EXPECT_FALSE(viewed("Integrator \"directlighting\"", v3_film).notes.empty());
 }
 
+TEST(PbrtCamera, FiltersAreBoxesOrTents) {
+  const auto box = viewed("PixelFilter \"box\"");
+  EXPECT_FALSE(box.picture.tent_filter);
+  EXPECT_EQ(noted(box), "");
+  const auto tent = viewed("PixelFilter \"triangle\" \"float xradius\" 1 \"float yradius\" 1");
+  EXPECT_TRUE(tent.picture.tent_filter);
+  EXPECT_EQ(noted(tent), "");
+  EXPECT_NE(noted(viewed("PixelFilter \"triangle\"")), "");
+  EXPECT_NE(noted(viewed("PixelFilter \"gaussian\" \"float xwidth\" 2", v3_film)), "");
+}
+
 TEST(PbrtCamera, OtherCamerasAreNotedOrRefused) {
   EXPECT_NE(noted(viewed("Camera \"realistic\" \"string lensfile\" \"x.dat\"")).find("pinhole"),
             std::string::npos);
