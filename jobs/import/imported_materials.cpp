@@ -68,7 +68,9 @@ std::size_t ImportedMaterials::index(const std::shared_ptr<const ImportedMateria
   if (const auto found = indices_.find(key); found != indices_.end()) return found->second;
   OrderedJson json = json_of(*material);
   if (radiance) add_emission(*radiance, json);
-  if (emits_behind) json["doubleSided"] = true;
+  // Elsewhere it says nothing to Lacuna; other viewers hide the back of what is single-sided.
+  const bool solid = material->type == ImportedMaterial::Type::dielectric;
+  if (emits_behind || (!radiance && !material->one_sided && !solid)) json["doubleSided"] = true;
   kept_.push_back(material);
   return indices_[key] = document_.add("materials", std::move(json));
 }

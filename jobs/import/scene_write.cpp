@@ -27,12 +27,14 @@ ImportedMesh turned_over(const ImportedMesh& mesh) {
   return out;
 }
 
-bool is_textured(const ImportedMaterial& m) {
+/// `seen`: materials that are known to have no textures.
+bool is_textured(const ImportedMaterial& m, std::set<const ImportedMaterial*>& seen) {
+  if (!seen.insert(&m).second) return false;
   const bool own = m.diffuse.texture || m.reflectance.texture || m.transmittance.texture ||
                    m.opacity.texture || m.alpha_texture || m.weight_texture || m.normal_map ||
                    m.bump_map;
   return own || std::any_of(m.parts.begin(), m.parts.end(),
-                            [](const auto& part) { return is_textured(*part.material); });
+                            [&](const auto& part) { return is_textured(*part.material, seen); });
 }
 
 class SceneWriter {
@@ -82,9 +84,10 @@ class SceneWriter {
 
   /// Textures of a mesh without coordinates show their upper left corner only.
   void note_lacking_uvs(const ImportedShape& shape) {
-    const bool textured =
-        is_textured(*shape.material) || (shape.radiance && shape.radiance->texture);
-    if (!shape.mesh->uvs.empty() || !textured) return;
+    if (!shape.mesh->uvs.empty()) return;
+    std::set<const ImportedMaterial*> seen;
+    const bool lit = shape.radiance && shape.radiance->texture;
+    if (!lit && !is_textured(*shape.material, seen)) return;
     notes_.push_back({shape.place, shape.name.empty() ? shape.mesh->name : shape.name,
                       "approximated", "it has textures and no texture coordinates"});
   }

@@ -7,12 +7,18 @@
 namespace lacuna::mitsuba {
 namespace {
 
-/// The same material on both sides.
-ImportedMaterial on_both_sides(const ImportedMaterial& m) {
+using MaterialPointer = std::shared_ptr<const ImportedMaterial>;
+
+/// The same material on both sides. `done`: parts that several others share.
+ImportedMaterial on_both_sides(const ImportedMaterial& m,
+                               std::map<MaterialPointer, MaterialPointer>& done) {
   ImportedMaterial out = m;
   out.one_sided = false;
   for (auto& part : out.parts) {
-    part.material = std::make_shared<const ImportedMaterial>(on_both_sides(*part.material));
+    MaterialPointer& turned = done[part.material];
+    if (!turned)
+      turned = std::make_shared<const ImportedMaterial>(on_both_sides(*part.material, done));
+    part.material = turned;
   }
   return out;
 }
@@ -33,7 +39,8 @@ std::vector<Materials::Pointer> Materials::inner(const Parameters& p, std::size_
 
 void Materials::read_two_sided(const Parameters& p, ImportedMaterial& m) {
   const auto sides = inner(p, 1, 2);
-  m = on_both_sides(*sides[0]);
+  std::map<MaterialPointer, MaterialPointer> done;
+  m = on_both_sides(*sides[0], done);
   if (sides.size() == 2 && sides[0] != sides[1]) {
     context_.note(p.element(), "approximated",
                   "its first BSDF is on both sides: there is one for each material");

@@ -40,9 +40,9 @@ void read_child(ReadContext& context, MissingFiles missing, const SceneElement& 
                 ImportedScene& scene) {
   if (e.tag == "shape") {
     shapes.add(e);
-  } else if (e.tag == "emitter" || e.tag == "luminaire") {
+  } else if (e.tag == "emitter") {
     add_emitter(context, missing, e, scene);
-  } else if (e.tag == "sensor" || e.tag == "camera") {
+  } else if (e.tag == "sensor") {
     add_sensor(context, e, scene);
   } else if (e.tag == "integrator") {
     read_integrator(context, e, scene);

@@ -77,6 +77,9 @@ class SceneFileReader {
                           int depth) {
     SceneElement e;
     e.tag = node.name();
+    // As Mitsuba called them up to 0.3.
+    if (e.tag == "luminaire") e.tag = "emitter";
+    if (e.tag == "camera") e.tag = "sensor";
     e.place = fmt::format("{}:{}", label, lines.of(node.offset_debug()));
     if (depth > max_element_depth) e.fail("is nested more than 64 deep");
     if (++elements_ > max_elements) e.fail(fmt::format("is one of more than {}", max_elements));

@@ -16,7 +16,7 @@ namespace lacuna::mitsuba {
 namespace {
 
 constexpr std::size_t max_group_depth = 16;
-constexpr std::size_t max_shapes = std::size_t{1} << 22;
+constexpr std::size_t max_shapes = std::size_t{1} << 20;
 
 /// From a v that grows downwards in pictures, as Mitsuba's own coordinates do, to ours.
 ImportedMesh v_turned(ImportedMesh mesh) {
@@ -50,11 +50,12 @@ std::string bytes_text(const InputBytes& bytes) { return {bytes.begin(), bytes.e
 }  // namespace
 
 void Shapes::add(const SceneElement& shape, const M44d& to_parent) {
+  // Instances count, too: groups of groups multiply.
+  if (++added_ > max_shapes) shape.fail("is one of more than 2^20 shapes");
   const Parameters p = context_.parameters(shape);
   if (shape.type() == "shapegroup") return;  // read where an instance names it
   if (shape.type() == "instance") return add_instance(p, to_parent);
   if (shape.type() == "merge") return add_group(shape, to_parent);
-  if (scene_.shapes.size() >= max_shapes) shape.fail("is one of more than 2^22 shapes");
   Read read_mesh = read(p);
   const M44d to_world = p.transform("toworld") * to_parent;
   const bool flip = p.boolean("flipnormals", false);
@@ -89,9 +90,10 @@ void Shapes::add(const SceneElement& shape, const M44d& to_parent) {
     out.mesh = plain;
   }
   out.to_world = read_mesh.placing * to_world;
-  // Without normals Mitsuba's front is where the placed triangles are counter-clockwise.
-  out.flipped = read_mesh.flipped != flip;
-  if (out.mesh->normals.empty() && is_mirroring(out.to_world)) out.flipped = !out.flipped;
+  // Without normals in the file Mitsuba's front is where the placed triangles are
+  // counter-clockwise.
+  const bool by_winding = wound_.contains(read_mesh.mesh.get());
+  out.flipped = flip != (by_winding && is_mirroring(out.to_world));
   scene_.shapes.push_back(std::move(out));
 }
 
@@ -177,8 +179,8 @@ Shapes::Read Shapes::read(const Parameters& p) {
   if (type == "sphere") return read_sphere(p);
   if (type == "cylinder") return read_cylinder(p);
   if (type == "disk") note_rounded(p, type);
-  if (type == "disk" || type == "rectangle" || type == "cube") return {unit_mesh(type), {}, false};
-  if (type == "obj" || type == "ply" || type == "serialized") return {load(p, type), {}, false};
+  if (type == "disk" || type == "rectangle" || type == "cube") return {unit_mesh(type), {}};
+  if (type == "obj" || type == "ply" || type == "serialized") return {load(p, type), {}};
   p.element().fail(
       "is a shape that is not read; allowed: obj, ply, serialized, rectangle, cube, sphere, disk, "
       "cylinder, shapegroup, instance, merge");
@@ -189,7 +191,7 @@ Shapes::Read Shapes::read_sphere(const Parameters& p) {
   const double radius = p.number("radius", 1);
   if (!(radius > 0)) p.element().fail("has a radius that is not above 0");
   return {unit_mesh("sphere"),
-          scaled(V3d(radius)) * translated(p.vector("center").value_or(V3d(0))), false};
+          scaled(V3d(radius)) * translated(p.vector("center").value_or(V3d(0)))};
 }
 
 Shapes::Read Shapes::read_cylinder(const Parameters& p) {
@@ -203,7 +205,7 @@ Shapes::Read Shapes::read_cylinder(const Parameters& p) {
   const V3d x = (std::abs(z.x) < .9 ? V3d(1, 0, 0) - z * z.x : V3d(0, 1, 0) - z * z.y).normalized(),
             y = z.cross(x);
   const M44d frame(x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, from.x, from.y, from.z, 1);
-  return {unit_mesh("cylinder"), scaled({radius, radius, length}) * frame, false};
+  return {unit_mesh("cylinder"), scaled({radius, radius, length}) * frame};
 }
 
 Shapes::MeshPointer Shapes::load(const Parameters& p, const std::string& kind) {
@@ -240,6 +242,7 @@ Shapes::MeshPointer Shapes::load(const Parameters& p, const std::string& kind) {
   }
   mesh.name = std::filesystem::path(name).stem().string();
   flat = flat || asks_flat;
+  const bool by_winding = flat || mesh.normals.empty();
   if (flat) {
     mesh.normals.clear();
   } else if (mesh.normals.empty()) {
@@ -248,7 +251,9 @@ Shapes::MeshPointer Shapes::load(const Parameters& p, const std::string& kind) {
   orient_by_normals(mesh);
   // Mitsuba's own v points down: it turns that of an OBJ by default, and no other's.
   if (!turned) mesh = v_turned(std::move(mesh));
-  return known = std::make_shared<const ImportedMesh>(std::move(mesh));
+  known = std::make_shared<const ImportedMesh>(std::move(mesh));
+  if (by_winding) wound_.insert(known.get());
+  return known;
 }
 
 }  // namespace lacuna::mitsuba

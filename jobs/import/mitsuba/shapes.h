@@ -25,8 +25,7 @@ class Shapes {
   using MeshPointer = std::shared_ptr<const ImportedMesh>;
   struct Read {
     MeshPointer mesh;
-    M44d placing;          ///< before the shape's toWorld
-    bool flipped = false;  ///< the front is where the mesh's triangles are clockwise
+    M44d placing;  ///< before the shape's toWorld
   };
 
   void add_group(const SceneElement& group, const M44d& to_parent);
@@ -51,7 +50,9 @@ class Shapes {
   std::map<std::pair<const ImportedMaterial*, const SceneElement*>,
            std::shared_ptr<const ImportedMaterial>>
       filled_;
+  std::set<const ImportedMesh*> wound_;  // their front follows from the triangles alone
   std::set<std::string> noted_;
+  std::size_t added_ = 0;
   std::vector<const SceneElement*> open_;
 };
 

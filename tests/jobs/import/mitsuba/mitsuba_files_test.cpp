@@ -177,6 +177,24 @@ TEST(MitsubaFiles, IncludesStayInTheFolderAndEnd) {
   EXPECT_TRUE(contains(refusal_of_include(folder, "c.xml", ""), "cannot find \"c.xml\""));
 }
 
+/// Without normals in the file the front is where the placed triangles are counter-clockwise.
+TEST(MitsubaFiles, MirroredMeshesShowTheSideOfTheirWinding) {
+  const TemporaryFolder folder;
+  folder.write("bare.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  folder.write("with.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n"));
+  const auto flipped = [&](const std::string& mesh, const std::string& more) {
+    const auto file = folder.write(
+        "scene.xml", "<scene version='0.6.0'><shape type='obj'><string name='filename' value='" +
+                         mesh + "'/><transform name='toWorld'><scale x='-1'/></transform>" + more +
+                         "</shape></scene>");
+    return read_mitsuba(file, MissingFiles::refuse).shapes.at(0).flipped;
+  };
+  EXPECT_TRUE(flipped("bare.obj", ""));
+  EXPECT_FALSE(flipped("with.obj", ""));
+  EXPECT_TRUE(flipped("with.obj", "<boolean name='faceNormals' value='true'/>"));
+  EXPECT_TRUE(flipped("with.obj", "<boolean name='flipNormals' value='true'/>"));
+}
+
 TEST(MitsubaFiles, HostileXmlIsRefused) {
   const auto refusal = [](const std::string& xml) {
     return message_of<SceneError>([&] { read_mitsuba_text(xml); });
@@ -195,6 +213,17 @@ TEST(MitsubaFiles, HostileXmlIsRefused) {
     doubling += "<default name='a" + next + "' value='$a" + now + ";$a" + now + "'/>";
   }
   EXPECT_TRUE(contains(refusal(doubling + "</scene>"), "longer than 65536 bytes"));
+  // Groups of which each has eight instances of the one before: 8^12.
+  std::string groups = "<scene><shape type='shapegroup' id='g0'/>";
+  for (int i = 1; i < 13; ++i) {
+    groups += "<shape type='shapegroup' id='g" + std::to_string(i) + "'>";
+    for (int k = 0; k < 8; ++k) {
+      groups += "<shape type='instance'><ref id='g" + std::to_string(i - 1) + "'/></shape>";
+    }
+    groups += "</shape>";
+  }
+  EXPECT_TRUE(contains(refusal(groups + "<shape type='instance'><ref id='g12'/></shape></scene>"),
+                       "is one of more than 2^20 shapes"));
   EXPECT_TRUE(contains(refusal("<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf "
                                "type='twosided' id='b'><ref id='a'/></bsdf><shape type='cube'>"
                                "<ref id='a'/></shape></scene>"),
