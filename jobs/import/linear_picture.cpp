@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "base/storage/input_file.h"
+#include "jobs/import/picture_formats.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/film/preview.h"
 #include "renderer/images/guards.h"
 #include "renderer/images/image_read.h"
+#include "renderer/images/png_write.h"
 #include "renderer/images/texture.h"
 
 namespace lacuna {
@@ -37,10 +39,28 @@ LinearPicture checkerboard(const ImportedTexture& t) {
   });
 }
 
+/// The ending of a name, in lower case.
+std::string kind_of(const std::filesystem::path& file) {
+  std::string kind = file.extension().string();
+  std::transform(kind.begin(), kind.end(), kind.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return kind;
+}
+
+InputBytes bytes_of(const ImportedTexture& t) {
+  InputFile about;
+  try {
+    return read_input(t.file, max_encoded_bytes, about);
+  } catch (const std::logic_error& e) {
+    throw SceneError(t.place + ": " + t.file.string() + ": " + e.what());
+  }
+}
+
 float one_channel(const Rgb& rgb, int channel) { return rgb[std::min(channel, 2)]; }
 
 LinearPicture float_picture(const ImportedTexture& t) {
-  const FloatImage image = read_float_image(t.file);
+  const FloatImage image =
+      kind_of(t.file) == ".pfm" ? read_pfm(bytes_of(t), t.file.string()) : read_float_image(t.file);
   require_finite(image, t.file.string());
   if (t.channel == 3) {
     throw SceneError(t.place + ": the alpha of an EXR is not read: " + t.file.string());
@@ -52,12 +72,11 @@ LinearPicture float_picture(const ImportedTexture& t) {
 }
 
 LinearPicture byte_picture(const ImportedTexture& t) {
-  InputFile about;
-  InputBytes bytes;
-  try {
-    bytes = read_input(t.file, max_encoded_bytes, about);
-  } catch (const std::logic_error& e) {
-    throw SceneError(t.place + ": " + t.file.string() + ": " + e.what());
+  InputBytes bytes = bytes_of(t);
+  if (kind_of(t.file) == ".tga") {
+    const CodePicture codes = read_tga(bytes, t.file.string());
+    const std::string png = encode_png(codes.width, codes.height, codes.codes);
+    bytes.assign(png.begin(), png.end());
   }
   const bool srgb = t.srgb && t.channel != 3;
   Texture texture(t.file.string(), std::move(bytes),
@@ -93,10 +112,8 @@ std::vector<std::uint8_t> codes_of(const LinearPicture& picture, F&& code) {
 }  // namespace
 
 bool is_float_picture(const std::filesystem::path& file) {
-  std::string kind = file.extension().string();
-  std::transform(kind.begin(), kind.end(), kind.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return kind == ".exr" || kind == ".hdr" || kind == ".rgbe" || kind == ".pic";
+  const std::string kind = kind_of(file);
+  return kind == ".exr" || kind == ".hdr" || kind == ".rgbe" || kind == ".pic" || kind == ".pfm";
 }
 
 LinearPicture linear_picture(const ImportedTexture& texture) {

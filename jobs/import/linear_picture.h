@@ -18,12 +18,12 @@ struct LinearPicture {
   }
 };
 
-/// Whether the file is one of float values (EXR, Radiance HDR), by its name.
+/// Whether the file is one of float values (EXR, Radiance HDR, PFM), by its name.
 bool is_float_picture(const std::filesystem::path& file);
 
-/// Decodes a texture's picture: EXR and HDR, or PNG, JPEG, WebP and TIFF of up to 8 bits a channel,
-/// by sRGB's curve or `gamma`; a single channel becomes grey. A checkerboard is baked at 512 x 512.
-/// Throws SceneError with the texture's place.
+/// Decodes a texture's picture: EXR, HDR and PFM, or PNG, JPEG, WebP, TIFF and TGA of up to 8 bits
+/// a channel, by sRGB's curve or `gamma`; a single channel becomes grey. A checkerboard is baked at
+/// 512 x 512. Throws SceneError with the texture's place.
 LinearPicture linear_picture(const ImportedTexture& texture);
 
 /// The same picture with as many pixels as `width` x `height`: bilinear, repeated at the borders.

@@ -46,6 +46,7 @@ TARGETS = (
     Target("pbrt", 4096, 1024),
     Target("mitsuba", 4096, 1024),
     Target("mesh_file", 4096, 1024),
+    Target("picture_file", 4096, 1024),
 )
 SECONDS_PER_INPUT = 60  # against hangs only: the machine may be busy
 
