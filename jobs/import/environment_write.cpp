@@ -83,6 +83,11 @@ void write_picture(const std::filesystem::path& file, const LinearPicture& pictu
 WrittenEnvironment write_environment(const ImportedEnvironment& e,
                                      const std::filesystem::path& folder,
                                      std::vector<ImportNote>& notes) {
+  if (e.daylight) {
+    write_picture(folder / "environment.exr",
+                  daylight_picture(*e.daylight, e.to_world, e.daylight_width));
+    return {"environment.exr", 1, 0};
+  }
   if (e.file.empty()) {
     write_picture(folder / "environment.exr", {2, 1, {e.scale, e.scale}});
     return {"environment.exr", 1, 0};

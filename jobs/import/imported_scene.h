@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/import/daylight.h"
 #include "jobs/import/imported_material.h"
 #include "renderer/core/vec.h"
 #include "renderer/settings/camera_settings.h"
@@ -60,6 +61,9 @@ struct ImportedEnvironment {
   std::filesystem::path file;  ///< empty: constant
   Layout layout = Layout::equirectangular;
   Rgb scale{1, 1, 1};
+  /// In place of a file: a sky or sun, whose own coordinates `to_world` turns; not `scale`.
+  std::optional<Daylight> daylight;
+  int daylight_width = 512;  ///< texels
   /// Directions of the picture to those of the world. In the picture's own coordinates the centre
   /// is +x, up is +z, and the azimuth grows to the left (towards +y).
   M44d to_world;

@@ -10,23 +10,6 @@ namespace {
 
 /// CIE XYZ to linear RGB of Rec. 709 (ITU-R BT.709-6, white D65), rows R, G, B; the digits of
 /// Mitsuba.
-Rgb rgb_of_xyz(const V3d& c) {
-  return Rgb(V3f(V3d(3.240479 * c.x - 1.537150 * c.y - 0.498535 * c.z,
-                     -0.969256 * c.x + 1.875991 * c.y + 0.041556 * c.z,
-                     0.055648 * c.x - 0.204043 * c.y + 1.057311 * c.z)));
-}
-
-double value_at(const Spectrum& spectrum, double nm) {
-  const auto above = std::lower_bound(spectrum.begin(), spectrum.end(), nm,
-                                      [](const auto& s, double at) { return s.first < at; });
-  if (above == spectrum.end()) return 0;
-  if (above->first == nm) return above->second;
-  if (above == spectrum.begin()) return 0;
-  const auto below = above - 1;
-  const double t = (nm - below->first) / (above->first - below->first);
-  return below->second + t * (above->second - below->second);
-}
-
 /// X, Y and Z of f(wavelength), over the integral of y. Each interval of the table is integrated
 /// with the matching functions linear in it, at 1 nm.
 template <class F>
@@ -54,6 +37,23 @@ double planck(double nm, double kelvin) {
 }
 
 }  // namespace
+
+Rgb rgb_of_xyz(const V3d& c) {
+  return Rgb(V3f(V3d(3.240479 * c.x - 1.537150 * c.y - 0.498535 * c.z,
+                     -0.969256 * c.x + 1.875991 * c.y + 0.041556 * c.z,
+                     0.055648 * c.x - 0.204043 * c.y + 1.057311 * c.z)));
+}
+
+double value_at(const Spectrum& spectrum, double nm) {
+  const auto above = std::lower_bound(spectrum.begin(), spectrum.end(), nm,
+                                      [](const auto& s, double at) { return s.first < at; });
+  if (above == spectrum.end()) return 0;
+  if (above->first == nm) return above->second;
+  if (above == spectrum.begin()) return 0;
+  const auto below = above - 1;
+  const double t = (nm - below->first) / (above->first - below->first);
+  return below->second + t * (above->second - below->second);
+}
 
 Rgb rgb_of_spectrum(const Spectrum& spectrum, EqualEnergy equal_energy) {
   V3d xyz = xyz_of([&](double nm) { return value_at(spectrum, nm); });

@@ -12,6 +12,12 @@ namespace lacuna {
 /// Pairs of wavelength (nm, growing) and value, linear between them and 0 outside.
 using Spectrum = std::vector<std::pair<double, double>>;
 
+/// Its value at a wavelength.
+double value_at(const Spectrum& spectrum, double nm);
+
+/// X, Y and Z of the CIE to linear RGB of Rec. 709; components may be negative.
+Rgb rgb_of_xyz(const V3d& xyz);
+
 /// What a spectrum of value 1 everywhere becomes: the colour of equal energy, (1.205, .948, .909),
 /// as for radiance; or white (each of X, Y, Z scaled), as reflectances are meant under daylight.
 enum class EqualEnergy { coloured, white };

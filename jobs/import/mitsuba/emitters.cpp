@@ -95,10 +95,70 @@ void add_environment(ReadContext& context, const Parameters& p, ImportedScene& s
   scene.environment = e;
 }
 
+V3d sun_in(const Parameters& p, const M44d& to_world) {
+  if (const auto given = p.vector("sundirection")) {
+    V3d local;
+    to_world.inverse().multDirMatrix(*given, local);
+    return local.normalized();
+  }
+  PlaceAndTime t;
+  t.latitude = p.number("latitude", t.latitude);
+  t.longitude = p.number("longitude", t.longitude);
+  t.timezone = p.number("timezone", t.timezone);
+  t.year = p.integer("year", t.year);
+  t.month = p.integer("month", t.month);
+  t.day = p.integer("day", t.day);
+  t.hours = p.number("hour", t.hours) + (p.number("minute", 0) + p.number("second", 0) / 60) / 60;
+  return direction_to_sun(t);
+}
+
+/// sky, sun or sunsky.
+void add_daylight(ReadContext& context, const Parameters& p, ImportedScene& scene) {
+  if (scene.environment) p.element().fail("is the second environment; allowed: one");
+  const std::string& type = p.element().type();
+  ImportedEnvironment e;
+  e.place = p.element().place;
+  e.to_world = p.transform("toworld");
+  Daylight d;
+  d.to_sun = sun_in(p, e.to_world);
+  d.turbidity = p.number("turbidity", d.turbidity);
+  const double scale = p.number("scale", 1);
+  d.sky_scale = type == "sun" ? 0 : p.number("skyscale", scale);
+  d.sun_scale = type == "sky" ? 0 : p.number("sunscale", scale);
+  d.radius_scale = p.number("sunradiusscale", 1);
+  e.daylight_width = p.integer("resolution", e.daylight_width);
+  if (!(d.turbidity >= 1 && d.turbidity <= 10)) p.element().fail("allowed: turbidity 1 to 10");
+  if (!(d.to_sun.y > 0)) p.element().fail("has its sun below the horizon");
+  if (!(d.radius_scale >= 0 && d.radius_scale <= 100)) {
+    p.element().fail("allowed: sunRadiusScale 0 to 100");
+  }
+  if (e.daylight_width < 2 || e.daylight_width > 8192) {
+    p.element().fail("allowed: a resolution of 2 to 8192");
+  }
+  if (d.sky_scale > 0) {
+    p.ignore({"albedo"});
+    context.note(p.element(), "approximated",
+                 "the sky of Preetham, Shirley and Smits (1999), in place of that of Hosek and "
+                 "Wilkie (2012); the ground's albedo has no influence");
+  }
+  if (d.radius_scale == 0 && d.sun_scale > 0) {
+    ImportedLight sun;
+    sun.kind = ImportedLight::Kind::directional;
+    sun.name = "sun";
+    sun.direction = -direction_in(e.to_world, d.to_sun);
+    sun.intensity =
+        sun_radiance(std::acos(d.to_sun.y), d.turbidity) *
+        static_cast<float>(d.sun_scale * 2 * std::numbers::pi * (1 - std::cos(sun_radius)));
+    scene.lights.push_back(sun);
+    d.sun_scale = 0;
+  }
+  e.daylight = d;
+  scene.environment = e;
+}
+
 }  // namespace
 
-void add_emitter(ReadContext& context, MissingFiles missing, const SceneElement& element,
-                 ImportedScene& scene) {
+void add_emitter(ReadContext& context, const SceneElement& element, ImportedScene& scene) {
   const Parameters p = context.parameters(element);
   const std::string& type = element.type();
   if (type == "point" || type == "spot" || type == "directional") {
@@ -106,17 +166,11 @@ void add_emitter(ReadContext& context, MissingFiles missing, const SceneElement&
   } else if (type == "constant" || type == "envmap") {
     add_environment(context, p, scene);
   } else if (type == "sky" || type == "sun" || type == "sunsky") {
-    if (missing == MissingFiles::refuse) {
-      element.fail(
-          "is a model of the sky, which is not read: render it to a picture and make it an "
-          "envmap, or leave it out with --missing skip");
-    }
-    context.note(element, "left out", "models of the sky are not read");
-    p.ignore_all();
+    add_daylight(context, p, scene);
   } else {
     element.fail(
         "is an emitter that is not read; allowed: area (in a shape), point, spot, directional, "
-        "constant, envmap");
+        "constant, envmap, sky, sun, sunsky");
   }
   p.ignore({"samplingweight"});
   p.note_unread(context.notes);

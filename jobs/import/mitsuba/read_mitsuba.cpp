@@ -36,12 +36,11 @@ std::vector<ImportNote> joined(std::vector<ImportNote> notes) {
   return out;
 }
 
-void read_child(ReadContext& context, MissingFiles missing, const SceneElement& e, Shapes& shapes,
-                ImportedScene& scene) {
+void read_child(ReadContext& context, const SceneElement& e, Shapes& shapes, ImportedScene& scene) {
   if (e.tag == "shape") {
     shapes.add(e);
   } else if (e.tag == "emitter") {
-    add_emitter(context, missing, e, scene);
+    add_emitter(context, e, scene);
   } else if (e.tag == "sensor") {
     add_sensor(context, e, scene);
   } else if (e.tag == "integrator") {
@@ -66,7 +65,7 @@ ImportedScene read_root(const SceneElement& root, const std::filesystem::path& f
   Materials materials(context, textures);
   Shapes shapes(context, textures, materials, scene);
   for (const SceneElement& child : root.children) {
-    read_child(context, missing, child, shapes, scene);
+    read_child(context, child, shapes, scene);
   }
   if (missing == MissingFiles::refuse && !context.missing_files.empty()) {
     const std::size_t others = context.missing_files.size() - 1;

@@ -135,10 +135,38 @@ std::string refusal_of_scene(const std::string& inner) {
       [&] { read_mitsuba_text("<scene version='0.6.0'>\n" + inner + "\n</scene>"); });
 }
 
+TEST(MitsubaScene, SkyAndSunAreOneEnvironment) {
+  const auto daylight_of = [](const std::string& inner) {
+    const ImportedScene s =
+        read_mitsuba_text("<scene version='0.6.0'><emitter type='" + inner + "</emitter></scene>");
+    EXPECT_EQ(s.environment.has_value() && s.environment->daylight, true) << inner;
+    return std::pair(s.environment->daylight.value(), s);
+  };
+  const auto sky = daylight_of("sky'><float name='scale' value='8'/>").first;
+  EXPECT_EQ(sky.sky_scale, 8);
+  EXPECT_EQ(sky.sun_scale, 0);
+  const auto both =
+      daylight_of(
+          "sunsky'><vector name='sunDirection' x='0' y='3' z='4'/><transform name='toWorld'>"
+          "<rotate y='1' angle='90'/></transform><float name='sunScale' value='2'/>")
+          .first;
+  EXPECT_NEAR((both.to_sun - V3d(-.8, .6, 0)).length(), 0, 1e-12) << "local";
+  EXPECT_EQ(both.sun_scale, 2);
+  EXPECT_EQ(both.sky_scale, 1);
+  const auto [point, scene] = daylight_of(
+      "sunsky'><vector name='sunDirection' x='0' y='1' z='0'/>"
+      "<float name='sunRadiusScale' value='0'/>");
+  EXPECT_EQ(point.sun_scale, 0);
+  ASSERT_EQ(scene.lights.size(), 1U);
+  EXPECT_NEAR(scene.lights[0].direction.y, -1, 1e-12);
+}
+
 TEST(MitsubaScene, RefusesByPlaceAndName) {
   EXPECT_EQ(refusal_of_scene("<shape type='hair' id='h'/>").substr(0, 44),
             "scene.xml:2: shape \"h\" (hair) is a shape tha");
-  EXPECT_TRUE(contains(refusal_of_scene("<emitter type='sky'/>"), "--missing skip"));
+  EXPECT_TRUE(
+      contains(refusal_of_scene("<emitter type='sky'><float name='hour' value='23'/></emitter>"),
+               "below the horizon"));
   EXPECT_TRUE(contains(refusal_of_scene("<shape type='cube'><ref id='x'/></shape>"),
                        "names \"x\", which no element has as its id"));
   EXPECT_TRUE(contains(refusal_of_scene("<bsdf type='diffuse' id='a'/><bsdf type='diffuse' "
