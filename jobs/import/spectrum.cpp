@@ -8,8 +8,6 @@
 namespace lacuna {
 namespace {
 
-/// CIE XYZ to linear RGB of Rec. 709 (ITU-R BT.709-6, white D65), rows R, G, B; the digits of
-/// Mitsuba.
 /// X, Y and Z of f(wavelength), over the integral of y. Each interval of the table is integrated
 /// with the matching functions linear in it, at 1 nm.
 template <class F>
@@ -38,6 +36,7 @@ double planck(double nm, double kelvin) {
 
 }  // namespace
 
+// ITU-R BT.709-6 with white D65, in the digits of Mitsuba.
 Rgb rgb_of_xyz(const V3d& c) {
   return Rgb(V3f(V3d(3.240479 * c.x - 1.537150 * c.y - 0.498535 * c.z,
                      -0.969256 * c.x + 1.875991 * c.y + 0.041556 * c.z,
