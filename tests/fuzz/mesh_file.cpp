@@ -1,5 +1,6 @@
 #include <string>
 
+#include "jobs/import/mesh_normals.h"
 #include "jobs/import/mitsuba/mesh_files.h"
 #include "jobs/import/ply_mesh.h"
 #include "renderer/core/scene_error.h"
@@ -25,8 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     ImportedMesh mesh = mesh_of({data, size});
     fuzz::expect_sound(mesh);
-    mitsuba::add_smooth_normals(mesh);
-    mitsuba::orient_by_normals(mesh);
+    add_smooth_normals(mesh);
+    orient_by_normals(mesh);
     fuzz::expect_sound(mesh);
   } catch (const SceneError& e) {
     fuzz::expect(*e.what() != '\0', "an error says something");

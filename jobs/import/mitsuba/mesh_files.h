@@ -20,10 +20,4 @@ ImportedMesh obj_mesh(const std::string& text, const std::string& label);
 ImportedMesh serialized_mesh(std::span<const std::uint8_t> file, std::uint64_t index,
                              const std::string& label, bool* face_normals = nullptr);
 
-/// Normals of the vertices, of their triangles weighted by angles; what Mitsuba gives a mesh
-/// without normals.
-void add_smooth_normals(ImportedMesh& mesh);
-/// Turns triangles over whose front is not where their normals point: Mitsuba's front is theirs.
-void orient_by_normals(ImportedMesh& mesh);
-
 }  // namespace lacuna::mitsuba

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/storage/input_file.h"
+#include "jobs/import/mesh_normals.h"
 #include "jobs/import/mitsuba/mesh_files.h"
 #include "jobs/import/ply_mesh.h"
 #include "jobs/import/shape_meshes.h"

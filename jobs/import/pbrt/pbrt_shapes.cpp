@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "jobs/import/input_bytes.h"
+#include "jobs/import/mesh_normals.h"
 #include "jobs/import/pbrt/pbrt_surfaces.h"
 #include "jobs/import/ply_mesh.h"
 #include "jobs/import/shape_meshes.h"
@@ -37,16 +38,6 @@ ImportedMesh paraboloid(double z_min, double phi_max) {
 }
 
 }  // namespace
-
-void turn_to_normals(ImportedMesh& mesh) {
-  if (mesh.normals.empty()) return;
-  for (auto& t : mesh.triangles) {
-    const V3f p = position(mesh, t, 0);
-    const V3f n = cross(position(mesh, t, 1) - p, position(mesh, t, 2) - p);
-    const V3f shading = mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]];
-    if (dot(n, shading) < 0) std::swap(t[1], t[2]);
-  }
-}
 
 bool has_mirrored_uvs(const ImportedMesh& mesh, bool flipped) {
   if (mesh.uvs.empty()) return false;
@@ -124,7 +115,7 @@ ShapeReader::Mesh ShapeReader::triangle_mesh(const Parameters& p) {
   for (std::size_t i = 0; i < indices.size(); i += 3) {
     mesh->triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
   }
-  turn_to_normals(*mesh);
+  orient_by_normals(*mesh);
   return mesh;
 }
 
@@ -143,7 +134,7 @@ ShapeReader::Mesh ShapeReader::ply(const Parameters& p) {
                                                bytes.size());
       ImportedMesh mesh = ply_mesh(view, file->string());
       mesh.colors.clear();  // pbrt does not read them
-      turn_to_normals(mesh);
+      orient_by_normals(mesh);
       return mesh;
     } catch (const SceneError& e) {
       fail(p.place(), e.what());

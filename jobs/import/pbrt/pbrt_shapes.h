@@ -44,10 +44,6 @@ class ShapeReader {
   std::size_t triangles_ = 0;
 };
 
-/// Lets the triangles be counter-clockwise as seen from the side of their normals, as pbrt decides
-/// what is in front. Does nothing without normals.
-void turn_to_normals(ImportedMesh& mesh);
-
 /// Whether u, v and the front's normal are a left-handed frame on most of the mesh. pbrt-v4's
 /// second axis of normal maps is n x dp/du, glTF's follows v.
 bool has_mirrored_uvs(const ImportedMesh& mesh, bool flipped);

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "jobs/import/mesh_normals.h"
 #include "jobs/import/pbrt/pbrt_shapes.h"
 
 namespace lacuna::pbrt {
@@ -175,7 +176,7 @@ std::shared_ptr<const ImportedMesh> bilinear_mesh(Context& context, const Parame
       fail(p.place(), fmt::format("{}: more than {} triangles", p.owner(), max_made_triangles));
     }
   }
-  turn_to_normals(*out);
+  orient_by_normals(*out);
   return out;
 }
 
@@ -208,16 +209,9 @@ std::shared_ptr<const ImportedMesh> loop_subdivision(Context& context, const Par
   points = limit_of(points, triangles);
   const auto out = std::make_shared<ImportedMesh>();
   out->name = "loopsubdiv";
-  std::vector<V3d> normals(points.size(), V3d(0, 0, 0));
-  for (const Triangle& t : triangles) {
-    const V3d n = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
-    for (const std::uint32_t v : t) normals[v] += n;
-  }
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    out->positions.emplace_back(points[v]);
-    out->normals.emplace_back(normals[v].normalized());
-  }
+  out->positions.assign(points.begin(), points.end());
   out->triangles = std::move(triangles);
+  add_smooth_normals(*out);
   context.approximated(
       p.place(), p.owner(),
       fmt::format("the surface's limit at {} levels, normals of the triangles", levels));

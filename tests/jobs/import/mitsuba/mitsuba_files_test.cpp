@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "jobs/import/mesh_normals.h"
 #include "jobs/import/mitsuba/mesh_files.h"
 #include "jobs/import/mitsuba/read_mitsuba.h"
 #include "renderer/core/scene_error.h"
@@ -101,10 +102,10 @@ TEST(MitsubaFiles, ObjSharesCornersAndRefusesMissingVertices) {
 TEST(MitsubaFiles, FrontIsWhereNormalsPoint) {
   ImportedMesh mesh =
       mitsuba::obj_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n", "a.obj");
-  mitsuba::orient_by_normals(mesh);
+  orient_by_normals(mesh);
   EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 2, 1}));
   mesh.normals.clear();
-  mitsuba::add_smooth_normals(mesh);
+  add_smooth_normals(mesh);
   EXPECT_EQ(mesh.normals[0], V3f(0, 0, -1));
 }
 
