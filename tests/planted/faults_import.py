@@ -2,7 +2,7 @@
 
 from fault import Fault
 
-PBRT = "jobs/import/pbrt/"
+PBRT, MITSUBA = "jobs/import/pbrt/", "jobs/import/mitsuba/"
 IMPORT = ("test_import",)
 
 FAULTS = [
@@ -35,4 +35,32 @@ FAULTS = [
           "if (direction.z < 0) {", "if (false) {", IMPORT),
     Fault("compressed files have no bound", "jobs/import/input_bytes.cpp",
           "if (out.size() > max_bytes) {", "if (false) {", IMPORT),
+    Fault("pictures of imported scenes are upside down", "jobs/import/scene_write.cpp", "uv.y = 1 - uv.y;", "uv.y = 0 + uv.y;", IMPORT),
+    Fault("placed pictures forget that v turns", "jobs/import/imported_textures.cpp",
+          "1 - t.scale.y - t.offset.y", "t.offset.y", IMPORT),
+    Fault("imported light loses its strength", "jobs/import/imported_materials.cpp",
+          '{{"emissiveStrength", strength}}', '{{"emissiveStrength", 1}}', IMPORT),
+    Fault("environments turn the other way", "jobs/import/environment_write.cpp",
+          "degrees = angle * 180", "degrees = -angle * 180", IMPORT),
+    Fault("resampled environments are mirrored", "jobs/import/environment_write.cpp",
+          ".5 - std::atan2(p.y, p.x)", ".5 + std::atan2(p.y, p.x)", IMPORT),
+    Fault("flipped shapes keep their front", "jobs/import/scene_write.cpp",
+          "for (auto& t : out.triangles) std::swap(t[1], t[2]);", "", IMPORT),
+    Fault("Mitsuba's camera has +x on the right", MITSUBA + "sensors.cpp",
+          "const double sign = i == 1 ? 1 : -1;", "const double sign = i == 2 ? -1 : 1;", IMPORT),
+    Fault("Mitsuba's field of view is that of the height", MITSUBA + "sensors.cpp",
+          'if (axis == "x") return tangent / aspect;', 'if (axis == "x") return tangent;', IMPORT),
+    Fault("twosided leaves the back of parts black", MITSUBA + "material_wrappers.cpp",
+          "  out.one_sided = false;\n", "", IMPORT),
+    Fault("metals forget what is outside", MITSUBA + "materials.cpp", "  m.eta /= outside;\n", "", IMPORT),
+    Fault("Mitsuba's textures start at the bottom", MITSUBA + "textures.cpp",
+          "1 - scale.y - offset.y", "offset.y", IMPORT),
+    Fault("includes may leave the folder", MITSUBA + "scene_element.cpp",
+          "if (end != root.end() ||", "if (false && end != root.end() &&", IMPORT),
+    Fault("groups multiply without a bound", MITSUBA + "shapes.cpp", "if (++added_ > max_shapes)", "if (false)", IMPORT),
+    Fault("every serialized mesh is the first", MITSUBA + "serialized_mesh.cpp", "(count - index)", "count", IMPORT),
+    Fault("mirrored meshes keep their front", MITSUBA + "shapes.cpp",
+          "flip != (by_winding &&", "flip != (false && by_winding &&", IMPORT),
+    Fault("PLY files are little-endian", "jobs/import/ply_mesh.cpp",
+          "if (encoding_ == PlyHeader::Encoding::big_endian) {", "if (false) {", IMPORT),
 ]
