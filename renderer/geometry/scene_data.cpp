@@ -2,6 +2,11 @@
 
 namespace lacuna {
 
+bool LacunaMaterial::part_chooses() const {
+  const std::optional<LacunaMaterial>& base = parts[0].material->lacuna;
+  return base && base->chooses();
+}
+
 V2f TextureRef::transform(const V2f& uv) const {
   // KHR_texture_transform: scale, then rotate, then translate. v points down, so a
   // counter-clockwise rotation turns the first axis towards negative v; the extension's first

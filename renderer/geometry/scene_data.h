@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "renderer/core/scene_error.h"
 #include "renderer/core/vec.h"
 #include "renderer/geometry/instance.h"
+#include "renderer/geometry/lacuna_material.h"
 #include "renderer/geometry/material_extensions.h"
 #include "renderer/images/texture.h"
 #include "renderer/settings/camera_settings.h"
@@ -70,10 +72,11 @@ struct Material {
   float transmission = 0;
   TextureRef transmission_texture;  ///< R
   MaterialExtensions extensions;
-  TextureRef normal_texture;  ///< linear; RGB is the normal, from [0, 1] to [-1, 1]
-  float normal_scale = 1;     ///< of the normal's x and y
-  bool mask = false;          ///< alphaMode MASK: rays pass where alpha < cutoff
-  bool blend = false;         ///< alphaMode BLEND: rays pass with probability 1 - alpha
+  std::optional<LacunaMaterial> lacuna;  ///< LACUNA_materials, instead of all but the base colour
+  TextureRef normal_texture;             ///< linear; RGB is the normal, from [0, 1] to [-1, 1]
+  float normal_scale = 1;                ///< of the normal's x and y
+  bool mask = false;                     ///< alphaMode MASK: rays pass where alpha < cutoff
+  bool blend = false;                    ///< alphaMode BLEND: rays pass with probability 1 - alpha
   /// KHR_materials_pbrSpecularGlossiness: A of specular_color_texture times 1 - roughness is the
   /// glossiness, 1 minus the roughness there.
   bool textured_glossiness = false;
@@ -87,7 +90,8 @@ struct Material {
   bool emits_behind() const { return emits() && double_sided && medium() == nullptr; }
   /// The absorbing medium behind the surface; null: there is none.
   const Medium* medium() const {
-    const bool passes = transmission > 0 || extensions.diffuse_transmission.factor > 0;
+    const bool passes = transmission > 0 || extensions.diffuse_transmission.factor > 0 ||
+                        (lacuna && lacuna->transmits());
     const Volume& v = extensions.volume;
     return passes && v.solid && !is_black(v.inside.extinction) ? &v.inside : nullptr;
   }
@@ -106,8 +110,23 @@ struct Material {
       if (t->used()) f(*t);
     }
     extensions.for_each_texture(f);
+    if (lacuna) lacuna->for_each_texture(f);
+  }
+  /// Whether the lobes differ from point to point of a surface.
+  bool varies() const {
+    bool result = vertex_colors || (lacuna && lacuna->chooses());
+    for_each_scattering_texture([&](const TextureRef&) { result = true; });
+    return result;
   }
 };
+
+template <class F>
+void LacunaMaterial::for_each_texture(F&& f) const {
+  for (const TextureRef* t : {&alpha_texture, &reflectance_texture, &weight_texture}) {
+    if (t->used()) f(*t);
+  }
+  for (const Part& part : parts) part.material->for_each_scattering_texture(f);
+}
 
 /// A camera. Looks along -z of `to_world`, x right, y up.
 struct CameraData {

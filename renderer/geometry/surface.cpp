@@ -7,7 +7,8 @@ namespace lacuna {
 namespace {
 
 bool uses_textures(const Material& m) {
-  bool any = m.emission_texture.used() || m.normal_texture.used();
+  bool any =
+      m.emission_texture.used() || m.normal_texture.used() || (m.lacuna && m.lacuna->bump.used());
   m.for_each_scattering_texture([&](const TextureRef&) { any = true; });
   return any;
 }
@@ -27,6 +28,19 @@ void place(Surface& s, const SceneData& scene, const Hit& hit, const TriangleSha
 /// would scatter no light.
 constexpr float least_cosine = 0.01F;
 
+/// `bent`, unit, and turned to the front of the triangle as far as it lies behind; s.ns if it has
+/// no direction.
+V3f towards_front(V3f bent, const Surface& s) {
+  const float length2 = bent.length2();
+  if (!(length2 > 0)) return s.ns;
+  bent /= std::sqrt(length2);
+  const V3f front = dot(s.ns, s.ng) < 0 ? -s.ng : s.ng;
+  if (const float lack = least_cosine - dot(bent, front); lack > 0) {
+    bent = (bent + front * lack).normalized();
+  }
+  return bent;
+}
+
 /// The shading normal `s.ns`, in scene coordinates, bent by the normal map of the material at
 /// barycentric `at`; `s.ns` without a map, if its texture is not decoded, or if the triangle has no
 /// texture coordinates. Of an instance it is bent in the scene, because normals and directions of
@@ -44,15 +58,37 @@ V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at) {
   const Rgb texel = texture.lookup(m.normal_texture.transform(mesh.mix(uvs, s.triangle, at))).rgb;
   const V3f n((2 * texel.x - 1) * m.normal_scale, (2 * texel.y - 1) * m.normal_scale,
               2 * texel.z - 1);
-  V3f bent = frame->to_world(n);
-  const float length2 = bent.length2();
-  if (!(length2 > 0)) return s.ns;
-  bent /= std::sqrt(length2);
-  const V3f front = dot(s.ns, s.ng) < 0 ? -s.ng : s.ng;
-  if (const float lack = least_cosine - dot(bent, front); lack > 0) {
-    bent = (bent + front * lack).normalized();
-  }
-  return bent;
+  return towards_front(frame->to_world(n), s);
+}
+
+/// The shading normal `s.ns`, in scene coordinates, of the surface displaced along it by the height
+/// of LACUNA_materials' bump map: n - grad h, up to its length (Blinn 1978, "Simulation of Wrinkled
+/// Surfaces"; Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU").
+V3f bumped_normal(const SceneData& scene, const Surface& s, const V2f& at) {
+  const Material& m = scene.materials[s.material];
+  if (!m.lacuna || !m.lacuna->bump.used()) return s.ns;
+  const TextureRef& bump = m.lacuna->bump;
+  const Texture& texture = *scene.textures[static_cast<std::size_t>(bump.texture)];
+  if (!texture.decoded()) return s.ns;
+  const auto d = texture_directions(scene, s, bump);
+  if (!d) return s.ns;
+  const Mesh& mesh = scene.meshes[s.mesh];
+  const auto& uvs = mesh.uvs[static_cast<std::size_t>(bump.uv_set)];
+  const V2f uv = bump.transform(mesh.mix(uvs, s.triangle, at));
+  // The slopes of the bilinear height, each their mean over the texel around the point.
+  const auto slope = [&](const V2f& half) {
+    const float rise = texture.lookup(uv + half).rgb.x - texture.lookup(uv - half).rgb.x;
+    return double(m.lacuna->bump_scale * rise) / (2 * double(half.x + half.y));
+  };
+  const double along_u = slope({0.5F / static_cast<float>(texture.size().x), 0});
+  const double along_v = slope({0, 0.5F / static_cast<float>(texture.size().y)});
+  // grad u and grad v are the dual basis of dx/du and dx/dv in the plane of the triangle.
+  const V3d du = d->along, dv = -d->up, across = du.cross(dv);
+  const double area2 = across.length2();
+  if (!(area2 > 0)) return s.ns;
+  const V3d gradient = (dv.cross(across) * along_u + across.cross(du) * along_v) / area2;
+  const V3d n(s.ns);
+  return towards_front(V3f(n - (gradient - n * n.dot(gradient))), s);
 }
 
 }  // namespace
@@ -67,6 +103,7 @@ Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, cons
   Surface s(scene, table, hit, x);
   if (hit.instance != no_instance) place(s, scene, hit, placed_triangle(scene, table, hit));
   s.ns = bent_normal(scene, s, {hit.u, hit.v});
+  s.ns = bumped_normal(scene, s, {hit.u, hit.v});
   return s;
 }
 

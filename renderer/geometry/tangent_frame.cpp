@@ -3,22 +3,17 @@
 namespace lacuna {
 namespace {
 
-/// The directions of +u and -v on a surface, not unit; only the side of `up` counts.
-struct Directions {
-  V3d along, up;
-};
-
-std::optional<Directions> of_file(const Mesh& mesh, std::uint32_t triangle, const V2f& at) {
+std::optional<TextureDirections> of_file(const Mesh& mesh, std::uint32_t triangle, const V2f& at) {
   if (mesh.tangents.empty()) return std::nullopt;
   const V4f t = mesh.mix(mesh.tangents, triangle, at);
   const V3d along(t.x, t.y, t.z);
-  return Directions{along, V3d(mesh.mix(mesh.normals, triangle, at)).cross(along) *
-                               std::copysign(1.0, double(t.w))};
+  return TextureDirections{along, V3d(mesh.mix(mesh.normals, triangle, at)).cross(along) *
+                                      std::copysign(1.0, double(t.w))};
 }
 
 /// dx/du and -dx/dv of the linear map from texture coordinates to positions.
-std::optional<Directions> of_coordinates(const Mesh& mesh, std::uint32_t triangle,
-                                         const TextureRef& texture) {
+std::optional<TextureDirections> of_coordinates(const Mesh& mesh, std::uint32_t triangle,
+                                                const TextureRef& texture) {
   const auto& uvs = mesh.uvs[static_cast<std::size_t>(texture.uv_set)];
   if (uvs.empty()) return std::nullopt;
   const auto& t = mesh.triangles[triangle];
@@ -30,15 +25,28 @@ std::optional<Directions> of_coordinates(const Mesh& mesh, std::uint32_t triangl
   const double area = u1 * v2 - u2 * v1;
   if (area == 0) return std::nullopt;
   const V3d e1 = x(1) - x(0), e2 = x(2) - x(0);
-  return Directions{(e1 * v2 - e2 * v1) / area, (e1 * u2 - e2 * u1) / area};
+  return TextureDirections{(e1 * v2 - e2 * v1) / area, (e1 * u2 - e2 * u1) / area};
 }
 
-V3d placed(const Instance& instance, const V3d& direction) {
-  const auto& a = instance.axes;
-  return V3d(a[0]) * direction.x + V3d(a[1]) * direction.y + V3d(a[2]) * direction.z;
+/// `d` of the triangle of `at_hit`, in scene coordinates.
+TextureDirections placed(const SceneData& scene, const Surface& at_hit,
+                         const TextureDirections& d) {
+  if (at_hit.instance == no_instance) return d;
+  const auto& a = scene.instances[at_hit.instance].axes;
+  const auto direction = [&](const V3d& w) {
+    return V3d(a[0]) * w.x + V3d(a[1]) * w.y + V3d(a[2]) * w.z;
+  };
+  return {direction(d.along), direction(d.up)};
 }
 
 }  // namespace
+
+std::optional<TextureDirections> texture_directions(const SceneData& scene, const Surface& at_hit,
+                                                    const TextureRef& texture) {
+  const auto d = of_coordinates(scene.meshes[at_hit.mesh], at_hit.triangle, texture);
+  if (!d) return std::nullopt;
+  return placed(scene, at_hit, *d);
+}
 
 std::optional<TangentFrame> tangent_frame(const SceneData& scene, const Surface& at_hit,
                                           const V2f& at, const TextureRef& texture) {
@@ -46,10 +54,7 @@ std::optional<TangentFrame> tangent_frame(const SceneData& scene, const Surface&
   auto d = of_file(mesh, at_hit.triangle, at);
   if (!d) d = of_coordinates(mesh, at_hit.triangle, texture);
   if (!d) return std::nullopt;
-  if (at_hit.instance != no_instance) {
-    const Instance& instance = scene.instances[at_hit.instance];
-    d = Directions{placed(instance, d->along), placed(instance, d->up)};
-  }
+  d = placed(scene, at_hit, *d);
   const V3d normal(at_hit.ns);
   const V3d along = d->along.normalized();
   const V3d across = along - normal * normal.dot(along);

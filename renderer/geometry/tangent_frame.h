@@ -24,4 +24,13 @@ struct TangentFrame {
 std::optional<TangentFrame> tangent_frame(const SceneData& scene, const Surface& at_hit,
                                           const V2f& at, const TextureRef& texture);
 
+/// dx/du and -dx/dv on the triangle of a hit, in scene coordinates: of the texture coordinates that
+/// `texture` reads, transformed as it says.
+struct TextureDirections {
+  V3d along, up;
+};
+/// None if the triangle has no such coordinates, or all three corners have them on a line.
+std::optional<TextureDirections> texture_directions(const SceneData& scene, const Surface& at_hit,
+                                                    const TextureRef& texture);
+
 }  // namespace lacuna

@@ -135,6 +135,10 @@ constexpr auto feature_rows = std::to_array<Feature>({
      "absorption along the way inside; solids in solids are refracted as if air were between them",
      ""},
     {"KHR_draco_mesh_compression", Treatment::exact, "", ""},
+    {"LACUNA_materials", Treatment::exact,
+     "conductors, rough and thin dielectrics, plastics, Phong, Ward, coatings, mixtures, bump maps "
+     "(docs/materials.md)",
+     ""},
     {"KHR_mesh_quantization", Treatment::exact, "", ""},
     {"KHR_texture_transform", Treatment::exact, "", ""},
     {"EXT_lights_image_based", Treatment::left_out, "", "give the job an `environment`"},

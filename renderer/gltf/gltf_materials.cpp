@@ -1,5 +1,6 @@
 #include "renderer/gltf/gltf_materials.h"
 
+#include "renderer/gltf/gltf_lacuna_materials.h"
 #include "renderer/gltf/gltf_material_extensions.h"
 #include "renderer/gltf/gltf_shading_models.h"
 
@@ -113,6 +114,7 @@ std::vector<Material> read_materials(const GltfObject& root, TextureTable& textu
     warn_of_unread_extensions(material, warnings);
     materials.push_back(std::move(out));
   }
+  read_lacuna_materials(root, textures, materials);
   materials.emplace_back().name = "default";
   return materials;
 }

@@ -130,6 +130,12 @@ std::vector<double> GltfObject::number_list(std::string_view key, const Limits& 
   return out;
 }
 
+std::vector<double> GltfObject::one_or_more(std::string_view key, const Limits& allowed) const {
+  const auto found = cursor_.find(key);
+  if (found && found->value().is_number()) return {read(*found, key, allowed)};
+  return number_list(key, allowed);
+}
+
 std::optional<std::array<double, 3>> GltfObject::light_colour(std::string_view key) const {
   const auto colour = numbers<3>(key, non_negative);
   if (colour && *std::max_element(colour->begin(), colour->end()) > 1) {

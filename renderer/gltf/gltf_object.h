@@ -72,6 +72,8 @@ class GltfObject {
   std::optional<std::array<double, N>> numbers(std::string_view key, const Limits& allowed) const;
   /// An array of any number of numbers; empty if the key is absent.
   std::vector<double> number_list(std::string_view key, const Limits& allowed) const;
+  /// A number, as one element, or an array of numbers; empty if the key is absent.
+  std::vector<double> one_or_more(std::string_view key, const Limits& allowed) const;
   /// A colour of light. glTF allows components up to 1; larger ones are more light, and are warned
   /// of.
   std::optional<std::array<double, 3>> light_colour(std::string_view key) const;

@@ -1,6 +1,7 @@
 #include "renderer/materials/bsdf.h"
 
 #include "renderer/materials/facet_probabilities.h"
+#include "renderer/materials/oren_nayar.h"
 
 namespace lacuna {
 namespace {
@@ -71,6 +72,10 @@ void Bsdf::reflected(const ShadingFrame& from, const Choice* c, const V3f& wo, c
           lobes_->layer.scale(lobes_->layer.let_through(from.mean_weight),
                               lobes_->layer.let_through(lobes_->layer.mean_weight(cos_i)));
       s.f = lobes_->diffuse * (scale * cos_i * inv_pi);
+      if (lobes_->further && lobes_->further->sigma > 0) {
+        s.f = oren_nayar(lobes_->diffuse, lobes_->further->sigma, from.n, wo, wi) *
+              (scale * cos_i * inv_pi);
+      }
     }
     if constexpr (want_pdf) s.pdf = static_cast<float>(c->diffuse) * cos_i * inv_pi;
   }
@@ -79,7 +84,7 @@ void Bsdf::reflected(const ShadingFrame& from, const Choice* c, const V3f& wo, c
   if (lobes_->interface.smooth() || length < cos_rounding) return;
   const V3f m = h * (1 / length);
   const Facets all = facets(from.n);
-  const float d = all.d(m);
+  const float d = all.d(m, wo);
   Interface::Split split;
   if (want_f || lobes_->facets_transmit()) split = lobes_->interface.split(0.5F * length, from.eta);
   if constexpr (want_f) s.f += split.reflected * (d * all.g2_over_4cos(wo, from.cos_o, wi, cos_i));
@@ -87,8 +92,8 @@ void Bsdf::reflected(const ShadingFrame& from, const Choice* c, const V3f& wo, c
     // Visible normals; dm / dwi = 1 / (4 wo.m).
     const FacetProbabilities coin =
         lobes_->facets_transmit() ? FacetProbabilities(split) : FacetProbabilities();
-    s.pdf +=
-        static_cast<float>(c->facets * coin.reflect) * 0.25F * all.g1_over_cos(wo, from.cos_o) * d;
+    s.pdf += static_cast<float>(c->facets * coin.reflect) * 0.25F *
+             all.sampled_over_d(wo, from.cos_o, m) * d;
   }
 }
 
@@ -125,7 +130,7 @@ void Bsdf::mirrored(const ShadingFrame& from, const Choice* c, const V3f& wo, co
   const float length = std::sqrt(h.length2());
   if (length < cos_rounding) return;
   const Facets all = facets(from.n);
-  const float d = all.d(h * (1 / length));
+  const float d = all.d(h * (1 / length), wo);
   const Interface::Split split = lobes_->interface.split(0.5F * length, from.eta);
   if constexpr (want_f) {
     s.f += split.transmitted * (d * all.g2_over_4cos(wo, from.cos_o, wi, cos_i));
@@ -141,10 +146,11 @@ void Bsdf::refracted(const ShadingFrame& from, const Choice* c, const V3f& wo, c
                      Scatter& s) const {
   const auto facet = RefractingFacet::find(from.n, wo, wi, from.eta);
   if (!facet) return;
-  const Rgb share = lobes_->interface.split(facet->cos_outside, lobes_->interface.ior).transmitted;
+  const float ior = lobes_->interface.ior;
+  const Rgb share = lobes_->interface.split(facet->cos_outside, std::max(ior, 1 / ior)).transmitted;
   const float cos_i = -dot(wi, from.n);
   const Facets all = facets(from.n);
-  const float common = all.d(facet->m) * all.g1_over_cos(wo, from.cos_o) * facet->cos_o *
+  const float common = all.d(facet->m, wo) * all.g1_over_cos(wo, from.cos_o) * facet->cos_o *
                        -facet->cos_i * facet->jacobian;
   // Walter et al. 2007, eq. 21, times the light's cosine; n_o^2 / (...)^2 is the jacobian, which
   // includes the 1 / eta^2 of radiance.
@@ -176,7 +182,7 @@ void Bsdf::cover(const ShadingFrame& from, const Choice* c, const V3f& wo, const
   if constexpr (want_f) s.f *= std::min(o.coat, i.coat);
   if (!lobes || !covers.coat.any() || covers.coat.smooth() || length < cos_rounding) return;
   const Facets facets(from.n, covers.coat.alpha);
-  const float d = facets.d(m);
+  const float d = facets.d(m, wo);
   if constexpr (want_f) {
     s.f += Rgb(covers.coat.reflectance(0.5F * length) * d *
                facets.g2_over_4cos(wo, from.cos_o, wi, cos_i));
@@ -191,21 +197,30 @@ Bsdf::Scatter Bsdf::scatter(const ShadingFrame& from, const Choice* c, const V3f
                             const V3f& wi) const {
   Scatter s;
   const int side = passage(from, wi);
+  if (coated()) {
+    if (side > 0) s = coated_scatter<want_f, want_pdf>(from, c, wo, wi);
+    return s;
+  }
   if (side > 0) reflected<want_f, want_pdf>(from, c, wo, wi, s);
   if (side < 0) transmitted<want_f, want_pdf>(from, c, wo, wi, s);
-  if (lobes_->further && side != 0 && lobes_->further->covers.any()) {
-    cover<want_f, want_pdf>(from, c, wo, wi, s);
+  if (lobes_->further && side != 0) {
+    if (lobes_->further->covers.any()) cover<want_f, want_pdf>(from, c, wo, wi, s);
+    if constexpr (want_f) s.f *= lobes_->further->scale;
   }
   return s;
 }
-// For bsdf_sample.cpp.
+// For bsdf_sample.cpp and bsdf_coating.cpp.
 template Bsdf::Scatter Bsdf::scatter<true, true>(const ShadingFrame&, const Choice*, const V3f&,
                                                  const V3f&) const;
+template Bsdf::Scatter Bsdf::scatter<true, false>(const ShadingFrame&, const Choice*, const V3f&,
+                                                  const V3f&) const;
+template Bsdf::Scatter Bsdf::scatter<false, true>(const ShadingFrame&, const Choice*, const V3f&,
+                                                  const V3f&) const;
 
 Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
   const float side_i = dot(wi, ng_);
-  if (lobes_->kind == Lobes::Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
+  if (dark(side) || side_i == 0) return Rgb(0, 0, 0);
   if (transport == Transport::radiance || flat_) {
     const ShadingFrame from = shading_frame(eye_normal(wo, side), wo);
     const Rgb f = scatter<true, false>(from, nullptr, wo, wi).f;
@@ -223,7 +238,7 @@ Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport trans
     return {eval_any(wo, wi, transport), pdf_any(wo, wi, transport)};
   }
   const float side = dot(wo, ng_);
-  if (lobes_->kind == Lobes::Kind::black || side == 0) return {};
+  if (dark(side)) return {};
   const V3f n = eye_normal(wo, side);
   const bool front = side > 0;
   // Early out before the lobes' terms: half of all directions lie behind an opaque surface.
@@ -249,7 +264,7 @@ std::optional<LambertLobe> Bsdf::lambert_lobe(const V3f& from) const {
 
 Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
-  if (lobes_->kind == Lobes::Kind::black || side == 0) return {};
+  if (dark(side)) return {};
   const auto density = [&](const V3f& n) {
     const ShadingFrame from = shading_frame(n, wo);
     const Choice c = choice(from);

@@ -82,7 +82,9 @@ class Bsdf {
         lobes_(lobes) {}
 
   /// Whether set_tangents() must be called: the facets have two widths.
-  bool needs_tangents() const { return lobes_->further && lobes_->further->alpha_along > 0; }
+  bool needs_tangents() const {
+    return lobes_->further && lobes_->further->two_widths(lobes_->interface.alpha);
+  }
   /// The tangent frame of the surface, unit, in which SurfaceParams::direction lies.
   void set_tangents(const V3f& tangent, const V3f& bitangent) {
     if (!needs_tangents()) return;
@@ -139,7 +141,7 @@ class Bsdf {
     return lobes_->kind == Lobes::Kind::lambert ||
            (lobes_->kind == Lobes::Kind::layered &&
             (!lobes_->interface.smooth() || lobes_->has_diffuse() ||
-             (lobes_->further && has_broad_extension())));
+             (lobes_->further && has_broad_further())));
   }
 
   /// eval(from, w, importance) as a function of w; none unless the surface is purely Lambertian.
@@ -150,8 +152,9 @@ class Bsdf {
   bool is_vpl_receiver(float least_alpha) const {
     if (transmits() || !connectible()) return false;
     return lobes_->has_diffuse() || lobes_->interface.alpha >= least_alpha ||
-           (lobes_->further && (lobes_->further->covers.sheen.any() ||
-                                lobes_->further->covers.coat.alpha >= least_alpha));
+           (lobes_->further &&
+            (lobes_->further->covers.sheen.any() ||
+             lobes_->further->covers.coat.alpha >= least_alpha || coating_alpha() >= least_alpha));
   }
   /// Whether some lobe transmits light to the other side.
   bool transmits() const {
@@ -226,6 +229,12 @@ class Bsdf {
 
   // Below, side = dot(w, ng).
 
+  /// Whether nothing is scattered to or from this side.
+  bool dark(float side) const {
+    return lobes_->kind == Lobes::Kind::black || side == 0 ||
+           (lobes_->further && lobes_->further->one_sided && side < 0);
+  }
+
   bool in_front_of_ns(const V3f& w, float side) const { return dot(w, side < 0 ? -ns_ : ns_) > 0; }
   /// ng or ns, on the side of `w`.
   V3f normal(bool with_ns, float side) const {
@@ -250,11 +259,11 @@ class Bsdf {
   std::optional<BsdfSample> sample_any(const V3f& wo, double u_lobe, const V2f& u,
                                        Transport transport) const;
 
-  bool has_broad_extension() const;
+  bool has_broad_further() const;
   Facets facets(const V3f& n) const {
     const float alpha = lobes_->interface.alpha;
-    return needs_tangents() ? Facets(n, alpha, lobes_->further->alpha_along, along_)
-                            : Facets(n, alpha);
+    if (!lobes_->further || !(lobes_->further->alpha_along > 0)) return {n, alpha};
+    return {n, alpha, lobes_->further->alpha_along, along_, lobes_->further->shape};
   }
   /// What the covers let through of direction `w`: all behind the surface of a solid, where its
   /// inside is, and without covers.
@@ -262,6 +271,19 @@ class Bsdf {
     const bool covered = lobes_->further && (lobes_->interface.thin || dot(w, ng_) > 0);
     return covered ? lobes_->further->covers.through(cos) : Covers::Through{};
   }
+
+  // Under a coating, Choice::coat is the probability of its boundary and Choice::facets that of the
+  // whole base, which is a Bsdf of its own.
+  bool coated() const { return lobes_->further && lobes_->further->coating && !bare_; }
+  float coating_alpha() const { return coated() ? lobes_->further->coating->alpha() : 0.0F; }
+  Bsdf below_coating(const ShadingFrame& from) const;
+  Choice coated_choice(const ShadingFrame& from) const;
+  template <bool want_f, bool want_pdf>
+  Scatter coated_scatter(const ShadingFrame& from, const Choice* c, const V3f& wo,
+                         const V3f& wi) const;
+  DeltaSum coated_delta_sum(const ShadingFrame& from, const Choice& c, const V3f& wi) const;
+  std::optional<LobeSample> sample_coated(const ShadingFrame& from, const Choice& c, const V3f& wo,
+                                          double u_lobe, const V2f& u) const;
 
   ShadingFrame shading_frame(const V3f& n, const V3f& wo) const;
   Choice choice(const ShadingFrame& from) const;
@@ -309,6 +331,7 @@ class Bsdf {
 
   V3f ng_, ns_;
   bool flat_;           // ns equals ng, up to the rounding of an interpolated normal
+  bool bare_ = false;   // without its coating: the base of another Bsdf
   V3f along_{0, 0, 0};  // direction of the wider facets, if needs_tangents()
   HeldLobes lobes_;
 };

@@ -19,10 +19,10 @@ V3f sample_hemisphere(const V3f& n, const V2f& u) {
 
 }  // namespace
 
-bool Bsdf::has_broad_extension() const {
+bool Bsdf::has_broad_further() const {
   const Covers& covers = lobes_->further->covers;
   return !is_black(lobes_->further->diffuse_through) || covers.sheen.any() ||
-         (covers.coat.any() && !covers.coat.smooth());
+         (covers.coat.any() && !covers.coat.smooth()) || coating_alpha() > 0;
 }
 
 Bsdf::Choice Bsdf::choice(const ShadingFrame& from) const {
@@ -31,6 +31,7 @@ Bsdf::Choice Bsdf::choice(const ShadingFrame& from) const {
     c.facets = 1;
     return c;
   }
+  if (coated()) return coated_choice(from);
   weigh_base(from, c);
   if (!lobes_->further) {
     const double sum = c.diffuse + c.facets + c.clear;
@@ -49,13 +50,13 @@ Bsdf::Choice Bsdf::choice(const ShadingFrame& from) const {
 
 void Bsdf::weigh_base(const ShadingFrame& from, Choice& c) const {
   const Interface& interface = lobes_->interface;
-  if (interface.glass > 0 || interface.film.strength > 0) {
+  if (interface.glass > 0 || interface.film.strength > 0 || interface.exact()) {
     const Interface::Split s = interface.split(from.cos_o, from.eta);
     c.facets = double(luminance(s.reflected));
     if (interface.clear()) {
       c.clear = double(luminance(s.transmitted));
       // Tilted facets may reflect even if the mean facet hardly does.
-      if (interface.ior > 1) c.facets += double(interface.glass * from.mean_weight);
+      if (interface.ior != 1) c.facets += double(interface.glass * from.mean_weight);
     } else {
       c.facets += double(luminance(s.transmitted));
     }
@@ -90,6 +91,7 @@ double Bsdf::delta_probability(const Choice& c, const Interface::Split& split,
 Bsdf::DeltaSum Bsdf::delta_sum(const ShadingFrame& from, const Choice& c,
                                const Interface::Split& split, const V3f& wi,
                                bool transmitted) const {
+  if (coated()) return transmitted ? DeltaSum{} : coated_delta_sum(from, c, wi);
   DeltaSum sum{{0, 0, 0}, delta_probability(c, split, transmitted)};
   if (sum.p > 0) sum.value = transmitted ? split.transmitted : split.reflected;
   if (!lobes_->further) return sum;
@@ -99,6 +101,7 @@ Bsdf::DeltaSum Bsdf::delta_sum(const ShadingFrame& from, const Choice& c,
     sum.p += c.coat;
     sum.value += Rgb(lobes_->further->covers.coat.reflectance(from.cos_o));
   }
+  sum.value *= lobes_->further->scale;
   return sum;
 }
 
@@ -120,6 +123,7 @@ std::optional<Bsdf::LobeSample> Bsdf::sample_lobe(const ShadingFrame& from, cons
   if (u_lobe < c.diffuse) return LobeSample{sample_cosine(n, u)};
   u_lobe -= c.diffuse;
   if (lobes_->further) {
+    if (coated()) return sample_coated(from, c, wo, u_lobe, u);
     if (u_lobe < c.through) return LobeSample{sample_cosine(-n, u), true};
     u_lobe -= c.through;
     if (u_lobe < c.sheen) return LobeSample{sample_hemisphere(n, u)};
@@ -130,7 +134,7 @@ std::optional<Bsdf::LobeSample> Bsdf::sample_lobe(const ShadingFrame& from, cons
   const bool clear = u_lobe < c.clear;
   if (!clear && c.facets == 0) return std::nullopt;
   const bool smooth = clear || lobes_->interface.smooth();
-  const V3f m = smooth ? n : facets(n).sample_visible(wo, u);
+  const V3f m = smooth ? n : facets(n).sample(wo, u);
   const float cos_m = dot(wo, m);
   if (cos_m <= 0) return std::nullopt;
   const Interface::Split split = lobes_->interface.split(cos_m, from.eta);
@@ -157,7 +161,7 @@ Bsdf::LobeSample Bsdf::sample_coat(const ShadingFrame& from, const Choice& c, co
                                    const V2f& u) const {
   const Coat& coat = lobes_->further->covers.coat;
   if (!coat.smooth()) {
-    return {reflect(wo, Facets(from.n, coat.alpha).sample_visible(wo, u))};
+    return {reflect(wo, Facets(from.n, coat.alpha).sample(wo, u))};
   }
   LobeSample result{reflect(wo, from.n)};
   result.delta =
@@ -173,7 +177,7 @@ float Bsdf::frame_probability(const V3f& w, const V3f& n) const {
 
 std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
   const float side = dot(wo, ng_);
-  if (lobes_->kind != Lobes::Kind::layered || side == 0) return std::nullopt;
+  if (lobes_->kind != Lobes::Kind::layered || dark(side)) return std::nullopt;
   const V3f n = eye_normal(wo, side);
   const ShadingFrame from = shading_frame(n, wo);
   if (!(from.cos_o > 0)) return std::nullopt;
@@ -223,7 +227,7 @@ std::optional<BsdfSample> Bsdf::finish_delta(const LobeSample& drawn, const Shad
 std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, double u_lobe, const V2f& u,
                                            Transport transport) const {
   const float side = dot(wo, ng_);
-  if (lobes_->kind == Lobes::Kind::black || side == 0) return std::nullopt;
+  if (dark(side)) return std::nullopt;
   V3f n = eye_normal(wo, side);
   float frame_probability = 1;
   if (transport == Transport::importance && !flat_) {

@@ -69,7 +69,7 @@ void set_extensions(const Material& material, const Texels& texel, SurfaceParams
 
 bool is_lambertian(const Material& m) {
   const MaterialExtensions& e = m.extensions;
-  return m.metallic == 0 && m.specular == 0 && m.transmission == 0 &&
+  return !m.lacuna && m.metallic == 0 && m.specular == 0 && m.transmission == 0 &&
          e.diffuse_transmission.factor == 0 && e.coat.factor == 0 && is_black(e.sheen.color);
 }
 

@@ -28,6 +28,53 @@ Interface::Interface(const SurfaceParams& params)
   }
 }
 
+Interface::Interface(const ExactSurface& s)
+    : alpha(s.roughness.widths().y), ior(s.ior), reflectance_(s.reflectance) {
+  using Base = ExactSurface::Base;
+  switch (s.base) {
+    case Base::gltf:
+    case Base::diffuse:
+      alpha = 0;
+      exact_ = Exact::constant;
+      reflectance_ = Rgb(0, 0, 0);
+      break;
+    case Base::glossy:
+      exact_ = Exact::constant;
+      break;
+    case Base::conductor:
+      exact_ = Exact::conductor;
+      eta_ = s.eta;
+      k_ = s.k;
+      break;
+    case Base::plastic:
+      exact_ = Exact::opaque;
+      break;
+    case Base::thin_dielectric:
+      alpha = 0;
+      [[fallthrough]];
+    case Base::dielectric:
+      thin = s.base == Base::thin_dielectric;
+      exact_ = thin ? Exact::pane : Exact::solid;
+      glass = 1;
+      glass_color = s.transmittance;
+      break;
+  }
+  r0 = split(1, ior).reflected;
+}
+
+Interface::Split Interface::exact_split(float cos, float eta) const {
+  if (exact_ == Exact::constant) return {reflectance_, Rgb(0, 0, 0)};
+  if (exact_ == Exact::conductor) {
+    const auto channel = [&](float n, float k) { return fresnel_conductor(cos, n, k); };
+    const Rgb f(channel(eta_.x, k_.x), channel(eta_.y, k_.y), channel(eta_.z, k_.z));
+    return {reflectance_ * f, Rgb(0, 0, 0)};
+  }
+  float f = fresnel_dielectric(cos, eta).reflectance;
+  // R + T^2 R (1 + R^2 + R^4 + ...), with T = 1 - R.
+  if (exact_ == Exact::pane) f = 2 * f / (1 + f);
+  return {f * reflectance_, (1 - f) * glass_color};
+}
+
 void Interface::add_film(float outside, Split& of) const {
   const float bare = 1 - film.strength;
   of.reflected *= bare;

@@ -1,6 +1,9 @@
 #include "renderer/materials/layer.h"
 
-#include "renderer/materials/ggx.h"
+#include <map>
+#include <memory>
+
+#include "renderer/materials/facets.h"
 #include "renderer/materials/roughness_table.h"
 
 namespace lacuna {
@@ -33,21 +36,81 @@ RoughnessTable& mean_weight_table() {
   return result;
 }
 
+/// The fraction of light that facets transmit from outside, over visible normals on a regular grid:
+/// the mean of what the unmasked ones do not reflect.
+float transmitted(float cos, float alpha, float ior, FacetShape shape) {
+  if (alpha < ggx_min_alpha) return 1 - fresnel_dielectric(cos, ior).reflectance;
+  cos = std::max(cos, 1e-4F);
+  constexpr int n = 32;
+  const V3f wo(std::sqrt(1 - cos * cos), 0, cos), normal(0, 0, 1);
+  const Facets facets(normal, alpha, alpha, V3f(1, 0, 0), shape);
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const V2f u((static_cast<float>(i) + 0.5F) / n, (static_cast<float>(j) + 0.5F) / n);
+      const V3f m = facets.sample(wo, u);
+      const float cos_m = dot(wo, m);
+      if (!(cos_m > 0)) continue;
+      const Fresnel f = fresnel_dielectric(cos_m, ior);
+      if (f.total) continue;
+      const V3f wi = refract(wo, m, ior, f.cos_t);
+      if (wi.z >= 0) continue;
+      sum += double((1 - f.reflectance) * facets.g1_over_cos(wi, -wi.z) * -wi.z);
+    }
+  }
+  return static_cast<float>(sum / (n * n));
+}
+
+/// The table of 1 - transmitted(). Each thread remembers the last one, because hits ask for it.
+RoughnessTable& dielectric_table(float ior, FacetShape shape) {
+  using Key = std::pair<float, FacetShape>;
+  thread_local std::pair<Key, RoughnessTable*> last{};
+  const Key key(ior, shape);
+  if (last.second != nullptr && last.first == key) return *last.second;
+  static std::mutex mutex;
+  static std::map<Key, std::unique_ptr<RoughnessTable>> tables;
+  const std::lock_guard lock(mutex);
+  std::unique_ptr<RoughnessTable>& table = tables[key];
+  if (!table) {
+    table = std::make_unique<RoughnessTable>(
+        [=](float cos, float alpha) { return 1 - transmitted(cos, alpha, ior, shape); });
+  }
+  last = {key, table.get()};
+  return *table;
+}
+
 /// Integral of Schlick's weight times 2 cos over [0, 1].
 constexpr float smooth_hemisphere = 1.0F / 21;
 
 }  // namespace
 
-Layer::Layer(float f0, float f90, float alpha)
-    : f0_(f0), f90_(f90), row_(alpha == 0 ? -1.0F : RoughnessTable::row(alpha)) {
-  if (row_ >= 0) mean_weight_table().need(row_);
-  const float mean =
-      let_through(row_ < 0 ? smooth_hemisphere : mean_weight_table().hemisphere(row_));
+Layer::Layer(float f0, float f90, float alpha) : f0_(f0), f90_(f90) {
+  float mean_weight = smooth_hemisphere;
+  if (alpha != 0) mean_weight = use(mean_weight_table(), alpha);
+  const float mean = let_through(mean_weight);
   norm_ = mean > 0 ? 1 / mean : 0;
 }
 
+Layer::Layer(float ior, const Roughness& roughness) : f90_(1), ior_(ior) {
+  const V2f widths = roughness.widths();
+  double mean_weight = mean_dielectric_reflectance(double(ior));
+  if (widths.y > 0) {
+    mean_weight =
+        double(use(dielectric_table(ior, roughness.shape), std::sqrt(widths.x * widths.y)));
+  }
+  norm_ = mean_weight < 1 ? static_cast<float>(1 / (1 - mean_weight)) : 0;
+}
+
+/// The mean over the hemisphere of `table` at `alpha`.
+float Layer::use(RoughnessTable& table, float alpha) {
+  row_ = RoughnessTable::row(alpha);
+  table.need(row_);
+  table_ = &table;
+  return table.hemisphere(row_);
+}
+
 MeanWeights::MeanWeights(const Layer& layer) : smooth_(layer.row_ < 0) {
-  if (!smooth_) mean_weight_table().columns_at(layer.row_, v_);
+  if (!smooth_) layer.table_->columns_at(layer.row_, v_);
 }
 
 Float8 MeanWeights::at(Float8 cos) const {
@@ -59,7 +122,8 @@ Float8 MeanWeights::at(Float8 cos) const {
 }
 
 float Layer::mean_weight(float cos) const {
-  return row_ < 0 ? schlick_weight(cos) : mean_weight_table().at(row_, cos);
+  if (row_ >= 0) return table_->at(row_, cos);
+  return ior_ == 0 ? schlick_weight(cos) : fresnel_dielectric(cos, ior_).reflectance;
 }
 
 }  // namespace lacuna

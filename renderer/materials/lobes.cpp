@@ -42,4 +42,60 @@ void Lobes::add_further(const SurfaceParams& params) {
   }
 }
 
+void Lobes::make_exact(const SurfaceParams& params) {
+  const ExactSurface& e = *params.exact;
+  make_base(params);
+  if (e.one_sided || e.coating || kind == Kind::layered) {
+    kind = Kind::layered;
+    if (!further) further.emplace();
+    further->one_sided = e.one_sided;
+    further->scale = e.scale;
+    if (e.coating) further->coating.emplace(*e.coating);
+  } else {
+    diffuse *= e.scale;
+  }
+}
+
+/// The lobes of ExactSurface::base.
+void Lobes::make_base(const SurfaceParams& params) {
+  using Base = ExactSurface::Base;
+  const ExactSurface& e = *params.exact;
+  if (e.base == Base::gltf) {
+    SurfaceParams plain = params;
+    plain.exact.reset();
+    *this = Lobes(plain);
+    return;
+  }
+  diffuse = params.base_color;
+  if (e.base == Base::diffuse && e.sigma == 0) {
+    kind = is_black(diffuse) ? Kind::black : Kind::lambert;
+    return;
+  }
+  interface = Interface(e);
+  further.emplace();
+  further->sigma = e.sigma;
+  if (!interface.smooth()) {
+    further->alpha_along = e.roughness.widths().x;
+    further->shape = e.roughness.shape;
+  }
+  switch (e.base) {
+    case Base::plastic: {
+      layer = Layer(e.ior, e.roughness);
+      // The mean reflectance from inside, by reciprocity.
+      const float let_out = layer.mean_let_through() / (e.ior * e.ior);
+      const auto tinted = [&](float kd) { return kd * let_out / (1 - kd * (1 - let_out)); };
+      if (e.nonlinear) diffuse = {tinted(diffuse.x), tinted(diffuse.y), tinted(diffuse.z)};
+      break;
+    }
+    case Base::conductor:
+    case Base::dielectric:
+    case Base::thin_dielectric:
+      diffuse = Rgb(0, 0, 0);
+      medium = e.base == Base::dielectric ? params.medium : nullptr;
+      break;
+    default:
+      break;
+  }
+}
+
 }  // namespace lacuna

@@ -5,6 +5,7 @@
 
 #include "renderer/core/vec.h"
 #include "renderer/geometry/medium.h"
+#include "renderer/materials/coating.h"
 #include "renderer/materials/covers.h"
 #include "renderer/materials/interface.h"
 #include "renderer/materials/layer.h"
@@ -31,14 +32,25 @@ struct SurfaceParams {
   float alpha_along = 0;  ///< GGX width along `direction`, >= alpha; 0: the facets are isotropic
   V2f direction{1, 0};    ///< unit, in the tangent frame
   ThinFilm film = {};
+  std::optional<ExactSurface> exact = {};  ///< replaces the lobes of all but base_color and medium
 };
 
 /// The lobes that few materials have.
 struct FurtherLobes {
   Rgb diffuse_through{0, 0, 0};  ///< Lambert's lobe on the other side: share times colour
   Covers covers;
-  float alpha_along = 0;  ///< as in SurfaceParams
+  float alpha_along = 0;  ///< as in SurfaceParams; above 0 if `shape` is not glTF's
   V2f direction{1, 0};
+  FacetShape shape = FacetShape::ggx;
+  float sigma = 0;         ///< of a rough diffuse base (oren_nayar.h); 0: Lambert
+  bool one_sided = false;  ///< the back is black
+  Rgb scale{1, 1, 1};      ///< of all lobes
+  std::optional<Coating> coating;
+
+  /// Whether the facets, across of `alpha`, or those of the coating have two widths.
+  bool two_widths(float alpha) const {
+    return (alpha_along > 0 && alpha_along != alpha) || (coating && coating->two_widths());
+  }
 };
 
 /// The scattering of a surface without its normals. Computed once for all hits if the material has
@@ -49,8 +61,10 @@ struct Lobes {
   // Implicit: both types describe the same surface.
   Lobes(const SurfaceParams& params)
       : diffuse(((1 - params.metallic) * (1 - params.transmission)) * params.base_color) {
-    if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0) ||
-        has_further(params)) {
+    if (params.exact) [[unlikely]] {
+      make_exact(params);
+    } else if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 ||
+               !is_black(params.f0) || has_further(params)) {
       add_interface(params);
     } else {
       kind = is_black(diffuse) ? Kind::black : Kind::lambert;
@@ -80,6 +94,8 @@ struct Lobes {
   }
   void add_interface(const SurfaceParams& params);
   void add_further(const SurfaceParams& params);
+  void make_exact(const SurfaceParams& params);
+  void make_base(const SurfaceParams& params);
 };
 
 /// The lobes at a hit: those of a uniform material, which all its hits share, or its own.
@@ -97,6 +113,7 @@ class HeldLobes {
   ~HeldLobes() = default;
 
   const Lobes* operator->() const { return lobes_; }
+  const Lobes& operator*() const { return *lobes_; }
 
  private:
   std::optional<Lobes> own_;

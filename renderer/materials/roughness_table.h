@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <utility>
 
@@ -17,8 +18,8 @@ namespace lacuna {
 class RoughnessTable {
  public:
   /// The value for a cosine in [0, 1] and a width `alpha` in [0, 1].
-  using Function = float (*)(float cos, float alpha);
-  explicit RoughnessTable(Function function) : function_(function) {}
+  using Function = std::function<float(float cos, float alpha)>;
+  explicit RoughnessTable(Function function) : function_(std::move(function)) {}
 
   static constexpr int rows = 17, columns = MeanWeights::columns;
   /// The position of a width among the rows.

@@ -42,6 +42,24 @@ inline Fresnel fresnel_dielectric(float cos, float eta) {
           false};
 }
 
+/// Reflectance of a conductor with the complex index of refraction `eta` + i `k` over that of the
+/// outside, exactly, for unpolarised light (Born and Wolf, sec. 14.2, solved for the squared
+/// moduli).
+inline float fresnel_conductor(float cos, float eta, float k) {
+  const float cos2 = cos * cos, sin2 = 1 - cos2;
+  const float real = eta * eta - k * k - sin2;                       // of n^2 - sin^2
+  const float ab2 = std::sqrt(real * real + 4 * eta * eta * k * k);  // a^2 + b^2, its modulus
+  const float a2 = 2 * cos * std::sqrt(std::max(0.0F, 0.5F * (ab2 + real)));  // 2 a cos
+  const float perpendicular = (ab2 - a2 + cos2) / (ab2 + a2 + cos2);
+  const float c = cos2 * ab2 + sin2 * sin2, d = a2 * sin2;
+  return 0.5F * perpendicular * (1 + (c - d) / (c + d));
+}
+
+/// Mean of the dielectric reflectance over light from all around, 2 cos d cos: closed form
+/// (Walsh 1926; Egan and Hilgeman 1979, "Optical Properties of Inhomogeneous Materials"). For `ior`
+/// below 1 by reciprocity: 1 - mean is ior^-2 times as much from the other side.
+double mean_dielectric_reflectance(double ior);
+
 /// The mirror image of `w` about `m`; both directions leave the surface.
 inline V3f reflect(const V3f& w, const V3f& m) { return 2 * dot(w, m) * m - w; }
 

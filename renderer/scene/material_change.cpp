@@ -13,6 +13,12 @@ void change_material(SceneData& scene, const MaterialChange& change, const std::
   for (Material& m : scene.materials) {
     if (!m.name.empty()) names.insert(m.name);
     if (m.name != change.name) continue;
+    if (m.lacuna) {
+      throw SceneError(
+          fmt::format("material \"{}\" of scene \"{}\" has LACUNA_materials: its "
+                      "roughness and metallic are not used",
+                      m.name, file));
+    }
     m.roughness = static_cast<float>(change.roughness);
     m.metallic = static_cast<float>(change.metallic);
     m.metallic_roughness_texture = {};

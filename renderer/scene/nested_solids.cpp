@@ -12,6 +12,7 @@ constexpr int most_meshes = 4096;
 constexpr int most_hits = 256;  // of one ray
 
 bool refracts(const Material& m) {
+  if (m.lacuna) return m.lacuna->type == LacunaMaterial::Type::dielectric;
   return m.extensions.volume.solid && m.transmission > 0 && m.metallic < 1;
 }
 const Material& material_of(const SceneData& data, std::uint32_t mesh) {

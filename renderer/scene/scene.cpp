@@ -1,6 +1,7 @@
 #include "renderer/scene/scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "renderer/images/guards.h"
 #include "renderer/images/image_read.h"
 #include "renderer/materials/gltf_material.h"
+#include "renderer/materials/lacuna_params.h"
 
 namespace lacuna {
 
@@ -29,6 +31,12 @@ std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {
                                        e.rotation);
 }
 
+/// What a mixture chooses its part by.
+PointBits bits_of(const Surface& s) {
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  return {bits(s.x.x), bits(s.x.y), bits(s.x.z), s.mesh, s.triangle};
+}
+
 }  // namespace
 
 Scene::Scene(SceneData data, const SceneNeeds& needs,
@@ -39,9 +47,10 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool))) {
   has_media_ = std::ranges::any_of(data_->materials,
                                    [](const Material& m) { return m.medium() != nullptr; });
-  plain_ = data_->instances.empty() &&
-           std::ranges::none_of(data_->materials,
-                                [](const Material& m) { return m.normal_texture.used(); });
+  plain_ =
+      data_->instances.empty() && std::ranges::none_of(data_->materials, [](const Material& m) {
+        return m.normal_texture.used() || (m.lacuna && m.lacuna->bump.used());
+      });
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     find_contacts(pool);
@@ -87,8 +96,10 @@ void Scene::make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) cons
     place.emplace(albedo, s.ng, s.ns);
     return;
   }
-  SurfaceParams params = surface_params(material(s), data_->textures, s.uv);
-  if (material(s).vertex_colors) params.base_color *= vertex_color(s);
+  const Material& m = material(s);
+  SurfaceParams params = m.lacuna ? lacuna_params(m, data_->textures, s.uv, bits_of(s))
+                                  : surface_params(m, data_->textures, s.uv);
+  if (m.vertex_colors) params.base_color *= vertex_color(s);
   place.emplace(params, s.ng, s.ns);
 }
 
@@ -104,16 +115,17 @@ void Scene::make_uniform_lobes() {
   lambertian_.resize(data_->materials.size());
   for (std::size_t i = 0; i < data_->materials.size(); ++i) {
     const Material& m = data_->materials[i];
-    bool varies = m.vertex_colors;
-    m.for_each_scattering_texture([&](const TextureRef&) { varies = true; });
+
     lambertian_[i] = is_lambertian(m);
-    if (!varies) uniform_lobes_[i] = surface_params(m, {}, {});
+    if (m.varies()) continue;
+    uniform_lobes_[i].emplace(m.lacuna ? lacuna_params(m, {}, {}, {}) : surface_params(m, {}, {}));
   }
 }
 
 void Scene::set_tangents(const Surface& s, Bsdf& bsdf) const {
-  const auto frame =
-      tangent_frame(*data_, s, barycentric(s), material(s).extensions.anisotropy.texture);
+  const Material& m = material(s);
+  const TextureRef& texture = m.lacuna ? m.lacuna->alpha_texture : m.extensions.anisotropy.texture;
+  const auto frame = tangent_frame(*data_, s, barycentric(s), texture);
   const Frame any(s.ns);
   bsdf.set_tangents(frame ? frame->s : any.s, frame ? frame->t : any.t);
 }
@@ -130,6 +142,7 @@ void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
     if (!needs.materials) continue;
     m.for_each_scattering_texture(want);
     want(m.normal_texture);
+    if (m.lacuna) want(m.lacuna->bump);
   }
   std::vector<Texture*> small;
   std::vector<Texture*> large;

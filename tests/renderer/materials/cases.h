@@ -15,13 +15,23 @@ struct Surface {
   std::string name;
   SurfaceParams params;
 
+  /// Whether the formulas bound what is reflected: Ward's do not, at grazing angles.
+  bool bounded() const {
+    const FacetShape shape = params.exact ? params.exact->roughness.shape : FacetShape::ggx;
+    return shape != FacetShape::ward && shape != FacetShape::ward_duer;
+  }
   bool opaque() const {
+    if (params.exact) {
+      return params.exact->base != ExactSurface::Base::dielectric &&
+             params.exact->base != ExactSurface::Base::thin_dielectric;
+    }
     return (params.transmission == 0 && params.diffuse_transmission == 0) || params.metallic == 1;
   }
 };
 
 /// Index of refraction behind the surface, as far as light that passes is refracted.
 inline float index_behind(const SurfaceParams& p) {
+  if (p.exact) return p.exact->base == ExactSurface::Base::dielectric ? p.exact->ior : 1.0F;
   return p.solid && p.transmission * (1 - p.metallic) > 0 ? p.ior : 1.0F;
 }
 
@@ -97,9 +107,102 @@ inline SurfaceParams layer(SurfaceParams p, const Rgb& f0, float f90) {
   return p;
 }
 
+/// A surface of LACUNA_materials. Also sets those of SurfaceParams' own values that describe it to
+/// tests: the width of its narrowest facets and whether it transmits.
+inline SurfaceParams exact(const ExactSurface& e, const Rgb& base = Rgb(1, 1, 1)) {
+  SurfaceParams p;
+  p.exact = e;
+  p.base_color = base;
+  p.alpha = std::min(e.roughness.alpha.x, e.roughness.alpha.y);
+  p.ior = e.ior;
+  p.solid = e.base == ExactSurface::Base::dielectric;
+  p.transmission = p.solid || e.base == ExactSurface::Base::thin_dielectric ? 1 : 0;
+  p.f90 = e.base == ExactSurface::Base::diffuse ? 0 : 1;
+  return p;
+}
+inline SurfaceParams metal_of(const Roughness& r) {
+  return exact({.base = ExactSurface::Base::conductor,
+                .roughness = r,
+                .eta = {1.657F, 0.880F, 0.521F},
+                .k = {9.224F, 6.270F, 4.837F}});
+}
+inline SurfaceParams glass_of(float ior, const Roughness& r) {
+  return exact({.base = ExactSurface::Base::dielectric, .roughness = r, .ior = ior});
+}
+inline SurfaceParams plastic_of(const Roughness& r, bool nonlinear) {
+  return exact({.base = ExactSurface::Base::plastic, .nonlinear = nonlinear, .roughness = r},
+               {0.6F, 0.3F, 0.1F});
+}
+/// A glossy lobe of reflectance .4 over a diffuse one.
+inline SurfaceParams glossy_of(const Roughness& r) {
+  return exact({.base = ExactSurface::Base::glossy, .roughness = r, .reflectance = Rgb(0.4F)},
+               Rgb(0.4F));
+}
+inline SurfaceParams phong_of(float exponent) {
+  const float alpha = std::sqrt(2 / (exponent + 2));
+  return glossy_of({{alpha, alpha}, FacetShape::phong});
+}
+/// Under a dielectric coating of index 1.5.
+inline SurfaceParams coated_with(SurfaceParams p, const Roughness& r, const Rgb& depth) {
+  if (!p.exact) p.exact.emplace();
+  p.exact->coating = CoatingParams{.roughness = r, .optical_depth = depth};
+  return p;
+}
+inline SurfaceParams one_sided(SurfaceParams p) {
+  if (!p.exact) p.exact.emplace();
+  p.exact->one_sided = true;
+  return p;
+}
+inline Roughness facets(float alpha, FacetShape shape = FacetShape::ggx_separable) {
+  return {{alpha, alpha}, shape};
+}
+
+/// Of LACUNA_materials.
+inline std::vector<Surface> exact_surfaces() {
+  using Base = ExactSurface::Base;
+  const Roughness smooth{}, beckmann = facets(0.2F, FacetShape::beckmann);
+  const Rgb white(1, 1, 1), none(0, 0, 0), depth(0.1F, 0.3F, 0.6F);
+  const SurfaceParams rough_diffuse = exact({.base = Base::diffuse, .sigma = 0.3F}, Rgb(0.9F));
+  return {
+      {"oren_nayar", rough_diffuse},
+      {"one_sided_lambert", one_sided(lambert(white))},
+      {"gold_smooth", metal_of(smooth)},
+      {"aluminium_ggx", metal_of(facets(0.2F))},
+      {"aluminium_beckmann", metal_of(beckmann)},
+      {"aluminium_beckmann_sharp", metal_of(facets(0.005F, FacetShape::beckmann))},
+      {"aluminium_brushed", metal_of({{0.1F, 0.4F}, FacetShape::ggx_separable})},
+      {"aluminium_brushed_beckmann", metal_of({{0.5F, 0.1F}, FacetShape::beckmann})},
+      {"aluminium_one_sided", one_sided(metal_of(facets(0.3F)))},
+      {"solid_smooth", glass_of(1.5F, smooth)},
+      {"solid_bubble", glass_of(1 / 1.5F, facets(0.2F))},
+      {"solid_ggx", glass_of(1.5F, facets(0.2F))},
+      {"solid_beckmann", glass_of(1.5F, beckmann)},
+      {"pane", exact({.base = Base::thin_dielectric,
+                      .reflectance = {0.9F, 0.8F, 1},
+                      .transmittance = {0.5F, 1, 0.7F}})},
+      {"lacquer_smooth", plastic_of(smooth, false)},
+      {"lacquer_nonlinear", plastic_of(smooth, true)},
+      {"lacquer_ggx", plastic_of(facets(0.1F), true)},
+      {"lacquer_beckmann", plastic_of(beckmann, false)},
+      {"phong_30", phong_of(30)},
+      {"phong_1", phong_of(1)},
+      {"ward_balanced", glossy_of(facets(0.15F, FacetShape::ward_balanced))},
+      {"ward_balanced_brushed", glossy_of({{0.1F, 0.3F}, FacetShape::ward_balanced})},
+      {"ward_duer", glossy_of(facets(0.15F, FacetShape::ward_duer))},
+      {"ward_1992", glossy_of(facets(0.15F, FacetShape::ward))},
+      {"varnished_lambert", coated_with(lambert(white), smooth, depth)},
+      {"varnished_mirror", coated_with(metal_of(smooth), smooth, none)},
+      {"varnished_metal", coated_with(metal_of(facets(0.3F)), smooth, depth)},
+      {"varnished_plastic", coated_with(dielectric(white, 0.2F, 1.5F, 0), smooth, none)},
+      {"rough_varnish", coated_with(metal_of(facets(0.3F)), facets(0.1F), none)},
+      {"rough_varnish_over_mirror", coated_with(metal_of(smooth), beckmann, depth)},
+      {"rough_varnish_one_sided", one_sided(coated_with(lambert(white), facets(0.2F), none))},
+  };
+}
+
 inline std::vector<Surface> surfaces() {
   const Rgb white(1, 1, 1), black(0, 0, 0), orange(0.8F, 0.5F, 0.2F);
-  return {
+  std::vector<Surface> all{
       {"window_smooth", thin(dielectric(orange, 0, 1.5F, 1))},
       {"window_alpha_02", thin(dielectric(white, 0.2F, 1.5F, 1))},
       {"half_window", thin(dielectric(orange, 1, 1, 0.5F))},
@@ -149,6 +252,8 @@ inline std::vector<Surface> surfaces() {
       {"half_glass_smooth", dielectric(orange, 0, 1.5F, 0.5F)},
       {"half_clear", mixed(dielectric(orange, 0.3F, 1, 0.5F), 0.25F)},
   };
+  for (Surface& s : exact_surfaces()) all.push_back(std::move(s));
+  return all;
 }
 
 struct View {

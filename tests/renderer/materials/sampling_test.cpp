@@ -75,6 +75,15 @@ bool too_thin_for_floats(const SurfaceParams& p, const cases::View& v) {
   return p.alpha >= ggx_min_alpha && p.alpha * abs_dot(v.wo, v.ng) < 1e-6F;
 }
 
+/// The density of Ward's samples has the factor 1 / wo.m: the integral of a cell near its pole, at
+/// grazing angles, is not known to the test.
+bool has_pole(const SurfaceParams& p, const cases::View& v) {
+  if (!p.exact || abs_dot(v.wo, v.ng) > 0.01F) return false;
+  const FacetShape shape = p.exact->roughness.shape;
+  return shape == FacetShape::ward || shape == FacetShape::ward_duer ||
+         shape == FacetShape::ward_balanced;
+}
+
 constexpr Transport both_transports[] = {Transport::radiance, Transport::importance};
 
 TEST_P(Sampling, FollowsPdf) {
@@ -83,7 +92,7 @@ TEST_P(Sampling, FollowsPdf) {
   for (const cases::View& v : views()) {
     for (const Transport transport : both_transports) {
       if (transport == Transport::importance && v.flat()) continue;
-      if (too_thin_for_floats(surface_.params, v)) continue;
+      if (too_thin_for_floats(surface_.params, v) || has_pole(surface_.params, v)) continue;
       SCOPED_TRACE(v.name + (transport == Transport::radiance ? " radiance" : " importance"));
       const Bsdf bsdf = cases::bsdf(surface_.params, v.ng, v.ns);
       Rng random = cases::rng(++stream);
