@@ -18,7 +18,7 @@ Json with_lacuna(const Json& extension) {
 }
 
 /// A unit quad of the first of `materials`, which faces +z.
-GlbBuilder quad_of(const std::vector<Json>& materials) {
+GlbBuilder lacuna_quad(const std::vector<Json>& materials) {
   GlbBuilder b;
   b.add_texture(test::encode8(2, 1, 3, {0, 0, 0, 255, 255, 255}),
                 {{"wrapS", 33071}, {"wrapT", 33071}});
@@ -27,16 +27,16 @@ GlbBuilder quad_of(const std::vector<Json>& materials) {
   return b;
 }
 
-std::string error_of(const std::vector<Json>& materials) {
+std::string lacuna_error(const std::vector<Json>& materials) {
   try {
-    load(quad_of(materials));
+    load(lacuna_quad(materials));
   } catch (const SceneError& e) {
     return e.what();
   }
   return "";
 }
 
-/// The BSDF at a point of quad_of().
+/// The BSDF at a point of lacuna_quad().
 std::optional<Bsdf> bsdf_at(const Scene& scene, float x, float y) {
   Hit hit;
   const Ray ray{{x, y, 1}, {0, 0, -1}};
@@ -46,21 +46,21 @@ std::optional<Bsdf> bsdf_at(const Scene& scene, float x, float y) {
   return bsdf;
 }
 
-Scene scene_of(const std::vector<Json>& materials) {
+Scene lacuna_scene(const std::vector<Json>& materials) {
   const ThreadPool pool(1);
-  return {load(quad_of(materials)), {.materials = true}, std::nullopt, pool};
+  return {load(lacuna_quad(materials)), {.materials = true}, std::nullopt, pool};
 }
 
 TEST(LacunaMaterials, EveryMemberArrives) {
-  const auto scene = load(quad_of({with_lacuna({{"type", "conductor"},
-                                                {"distribution", "beckmann"},
-                                                {"alpha", {0.1, 0.4}},
-                                                {"alphaTexture", {{"index", 0}}},
-                                                {"eta", {1, 2, 3}},
-                                                {"k", {4, 5, 6}},
-                                                {"reflectance", {0.25, 0.5, 1}},
-                                                {"oneSided", true},
-                                                {"bump", {{"index", 0}, {"scale", 2}}}})}));
+  const auto scene = load(lacuna_quad({with_lacuna({{"type", "conductor"},
+                                                    {"distribution", "beckmann"},
+                                                    {"alpha", {0.1, 0.4}},
+                                                    {"alphaTexture", {{"index", 0}}},
+                                                    {"eta", {1, 2, 3}},
+                                                    {"k", {4, 5, 6}},
+                                                    {"reflectance", {0.25, 0.5, 1}},
+                                                    {"oneSided", true},
+                                                    {"bump", {{"index", 0}, {"scale", 2}}}})}));
   const LacunaMaterial& m = scene.materials.at(0).lacuna.value();
   EXPECT_EQ(m.type, LacunaMaterial::Type::conductor);
   EXPECT_EQ(m.shape, FacetShape::beckmann);
@@ -99,7 +99,7 @@ TEST(LacunaMaterials, RefusesWhatIsNotAllowed) {
   };
   const Json glass = with_lacuna({{"type", "dielectric"}, {"ior", 1.5}});
   for (const auto& [extension, expected] : cases) {
-    const std::string error = error_of({with_lacuna(extension), glass});
+    const std::string error = lacuna_error({with_lacuna(extension), glass});
     EXPECT_NE(error.find(expected), std::string::npos) << extension << "\n" << error;
     EXPECT_NE(error.find("materials[0]"), std::string::npos) << error;
   }
@@ -117,10 +117,10 @@ TEST(LacunaMaterials, PartsOfPartsEnd) {
     all.push_back(Json::object());
     return all;
   };
-  EXPECT_EQ(error_of(chain(7, 2)), "");
-  EXPECT_NE(error_of(chain(9, 2)).find("parts"), std::string::npos);
-  EXPECT_NE(error_of(chain(4, 8)).find("more than 256"), std::string::npos);
-  EXPECT_NE(error_of(chain(1000, 2)).find("depth of more than 8"), std::string::npos);
+  EXPECT_EQ(lacuna_error(chain(7, 2)), "");
+  EXPECT_NE(lacuna_error(chain(9, 2)).find("parts"), std::string::npos);
+  EXPECT_NE(lacuna_error(chain(4, 8)).find("more than 256"), std::string::npos);
+  EXPECT_NE(lacuna_error(chain(1000, 2)).find("depth of more than 8"), std::string::npos);
 }
 
 Json lambert_of(double r, double g, double b) {
@@ -131,11 +131,11 @@ Json lambert_of(double r, double g, double b) {
 /// The mean over points is the weighted sum of the parts, each point has the same part again, and
 /// what the weights leave is black.
 TEST(LacunaMaterials, MixturesChooseByTheirWeights) {
-  const Scene scene = scene_of({with_lacuna({{"type", "mixture"},
-                                             {"parts",
-                                              {{{"material", 1}, {"weight", {0.5, 0.25, 0.5}}},
-                                               {{"material", 2}, {"weight", 0.3}}}}}),
-                                lambert_of(1, 1, 0), lambert_of(0, 0, 1)});
+  const Scene scene = lacuna_scene({with_lacuna({{"type", "mixture"},
+                                                 {"parts",
+                                                  {{{"material", 1}, {"weight", {0.5, 0.25, 0.5}}},
+                                                   {{"material", 2}, {"weight", 0.3}}}}}),
+                                    lambert_of(1, 1, 0), lambert_of(0, 0, 1)});
   constexpr int n = 150;
   V3d sum(0, 0, 0);
   int black = 0;
@@ -158,10 +158,11 @@ TEST(LacunaMaterials, MixturesChooseByTheirWeights) {
 
 /// At the left of the texture only the first, at the right only the second.
 TEST(LacunaMaterials, AWeightTextureBlendsTwoParts) {
-  const Scene scene = scene_of({with_lacuna({{"type", "mixture"},
-                                             {"weightTexture", {{"index", 0}}},
-                                             {"parts", {{{"material", 1}}, {{"material", 2}}}}}),
-                                lambert_of(1, 0, 0), lambert_of(0, 1, 0)});
+  const Scene scene =
+      lacuna_scene({with_lacuna({{"type", "mixture"},
+                                 {"weightTexture", {{"index", 0}}},
+                                 {"parts", {{{"material", 1}}, {{"material", 2}}}}}),
+                    lambert_of(1, 0, 0), lambert_of(0, 1, 0)});
   int right = 0;
   constexpr int n = 200;
   for (int i = 0; i < n; ++i) {
@@ -177,7 +178,7 @@ TEST(LacunaMaterials, AWeightTextureBlendsTwoParts) {
 /// its slope is 2 there, and 0 beside.
 TEST(LacunaMaterials, BumpsTurnTheShadingNormal) {
   const Scene scene =
-      scene_of({with_lacuna({{"type", "diffuse"}, {"bump", {{"index", 0}, {"scale", 1}}}})});
+      lacuna_scene({with_lacuna({{"type", "diffuse"}, {"bump", {{"index", 0}, {"scale", 1}}}})});
   const auto normal = [&](float x) {
     Hit hit;
     const Ray ray{{x, 0.5F, 1}, {0, 0, -1}};

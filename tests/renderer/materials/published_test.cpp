@@ -10,8 +10,6 @@
 namespace lacuna {
 namespace {
 
-using namespace cases;
-
 /// The means of pictures of a unit sphere, seen from far along z, over its disc, with the standard
 /// errors of their worst channel.
 struct PublishedMean {
@@ -24,6 +22,7 @@ struct PublishedMean {
 };
 
 std::vector<PublishedMean> published_opaque() {
+  using namespace cases;
   const Rgb half(0.5F, 0.5F, 0.5F);
   const SurfaceParams gold = exact({.base = ExactSurface::Base::conductor,
                                     .eta = {0.143124F, 0.374956F, 1.442476F},
@@ -172,6 +171,7 @@ std::vector<PublishedMean> published_opaque() {
 
 /// After at most 11 scattering events on paths through the sphere.
 std::vector<PublishedMean> published_glass() {
+  using namespace cases;
   return {
       {"dielectric_1_5",
        glass_of(1.5F, {}),
