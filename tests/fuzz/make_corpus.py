@@ -209,6 +209,29 @@ def featured_scene(buffer):
                            "KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3}]}}}
 
 
+def lacuna_scene(buffer):
+    """The square with each type of LACUNA_materials."""
+    content = featured_scene(buffer)
+    texture = {"index": 0}
+    both = [{"material": 0, "weight": .5}, {"material": 6, "weight": [.1, .5, .2]}]
+    exact = [{"type": "diffuse", "sigma": .3, "oneSided": True, "bump": {"index": 0, "scale": .5}},
+             {"type": "conductor", "eta": [.2, .9, 1.1], "k": [3.9, 2.5, 2.1], "distribution": "beckmann",
+              "alpha": [.1, .4], "alphaTexture": texture, "reflectanceTexture": texture},
+             {"type": "dielectric", "ior": 1.5, "alpha": .2, "transmittance": [.9, 1, 1]},
+             {"type": "thinDielectric", "ior": 1.5, "reflectance": [1, .5, 1]},
+             {"type": "plastic", "ior": 1.5, "nonlinear": True, "alpha": .1},
+             {"type": "phong", "exponent": 30, "reflectance": [.2, .2, .2]},
+             {"type": "ward", "variant": "duer", "alpha": [.1, .2], "reflectance": [.2, .2, .2]},
+             {"type": "coating", "base": 1, "ior": 1.5, "thickness": .1, "absorption": [1, 2, 3]},
+             {"type": "mixture", "parts": both},
+             {"type": "mixture", "weightTexture": texture, "parts": [{"material": 7}, {"material": 8}]}]
+    content["materials"] = [{"extensions": {"LACUNA_materials": e}} for e in exact]
+    first = content["meshes"][0]["primitives"][0]
+    content["meshes"] = [{"primitives": [{**first, "material": i, "extensions": {}} for i in range(len(exact))]}]
+    content["extensionsUsed"] += ["LACUNA_materials"]
+    return content
+
+
 def write_glb(name, content, buffer):
     content["buffers"] = [{"byteLength": len(buffer.bytes)}]
     text = json.dumps(content, separators=(",", ":")).encode()
@@ -230,6 +253,8 @@ def posed():
 def featured():
     buffer = Buffer()
     write_glb("features.glb", featured_scene(buffer), buffer)
+    buffer = Buffer()
+    write_glb("lacuna.glb", lacuna_scene(buffer), buffer)
 
 
 def scenes():
