@@ -33,16 +33,23 @@ struct RefractingFacet {
 
 Rgb Bsdf::albedo() const {
   if (lobes_->kind != Lobes::Kind::layered) return lobes_->diffuse;
-  const Rgb through = lobes_->further ? lobes_->further->diffuse_through : Rgb(0, 0, 0);
+  const auto& further = lobes_->further;
+  const Rgb through = further ? further->diffuse_through : Rgb(0, 0, 0);
   const Rgb base = lobes_->interface.r0 +
                    lobes_->layer.let_through(0.0F) * (lobes_->diffuse + through) +
                    lobes_->interface.glass_color;
-  if (!lobes_->further || !lobes_->further->covers.any()) return base;
-  const float coat = lobes_->further->covers.coat.reflectance(1);
+  if (!further) return base;
+  const float coat = further->covers.coat.reflectance(1);
   const Rgb white(1, 1, 1);
   // Sheen is seen at grazing angles: half of it stands for all directions.
-  const Rgb sheen = 0.5F * lobes_->further->covers.sheen.color();
-  return coat * white + (1 - coat) * (sheen + (white - sheen) * base);
+  const Rgb sheen = 0.5F * further->covers.sheen.color();
+  const Rgb covered = coat * white + (1 - coat) * (sheen + (white - sheen) * base);
+  if (!further->coating) return further->scale * covered;
+  const Coating& c = *further->coating;
+  const float passes = c.let_through(1);
+  const Rgb absorption = c.absorption_at(1);
+  return further->scale *
+         (c.reflectance(1) + (passes * passes) * absorption * absorption * covered);
 }
 
 Bsdf::ShadingFrame Bsdf::shading_frame(const V3f& n, const V3f& wo) const {

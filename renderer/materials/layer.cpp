@@ -36,29 +36,42 @@ RoughnessTable& mean_weight_table() {
   return result;
 }
 
-/// The fraction of light that facets transmit from outside, over visible normals on a regular grid:
-/// the mean of what the unmasked ones do not reflect.
+/// What one facet, visible from `wo`, transmits past the others to the other side of z.
+double transmitted_by(const Facets& facets, const V3f& wo, const V3f& m, float ior) {
+  const float cos = dot(wo, m);
+  if (!(cos > 0)) return 0;
+  const Fresnel f = fresnel_dielectric(cos, ior);
+  if (f.total) return 0;
+  const V3f wi = refract(wo, m, ior, f.cos_t);
+  return wi.z < 0 ? double((1 - f.reflectance) * facets.g1_over_cos(wi, -wi.z) * -wi.z) : 0.0;
+}
+
+/// The fraction of light that facets transmit from outside, once scattered: the mean over visible
+/// normals, by the midpoint rule over squares around the centre of the unit square of their
+/// numbers. These are close to each other at its edge, where the slopes grow without bounds.
 float transmitted(float cos, float alpha, float ior, FacetShape shape) {
   if (alpha < ggx_min_alpha) return 1 - fresnel_dielectric(cos, ior).reflectance;
   cos = std::max(cos, 1e-4F);
-  constexpr int n = 32;
-  const V3f wo(std::sqrt(1 - cos * cos), 0, cos), normal(0, 0, 1);
-  const Facets facets(normal, alpha, alpha, V3f(1, 0, 0), shape);
+  const V3f wo(std::sqrt(1 - cos * cos), 0, cos);
+  const Facets facets({0, 0, 1}, alpha, alpha, V3f(1, 0, 0), shape);
+  constexpr int squares = 24, per_side = squares / 2;
+  const auto radius = [](double t) { return 1 - (1 - t) * (1 - t) * (1 - t); };
+  const auto from_centre = [](double x) { return static_cast<float>(0.5 + 0.5 * x); };
   double sum = 0;
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      const V2f u((static_cast<float>(i) + 0.5F) / n, (static_cast<float>(j) + 0.5F) / n);
-      const V3f m = facets.sample(wo, u);
-      const float cos_m = dot(wo, m);
-      if (!(cos_m > 0)) continue;
-      const Fresnel f = fresnel_dielectric(cos_m, ior);
-      if (f.total) continue;
-      const V3f wi = refract(wo, m, ior, f.cos_t);
-      if (wi.z >= 0) continue;
-      sum += double((1 - f.reflectance) * facets.g1_over_cos(wi, -wi.z) * -wi.z);
+  for (int i = 0; i < squares; ++i) {
+    const double r = radius((i + 0.5) / squares);
+    const double inner = radius(double(i) / squares), outer = radius((i + 1.0) / squares);
+    double on_square = 0;
+    for (int j = 0; j < per_side; ++j) {
+      const double x = r * (2 * (j + 0.5) / per_side - 1);
+      for (const auto& [a, b] : {std::pair(r, x), {-r, x}, {x, r}, {x, -r}}) {
+        const V3f m = facets.sample(wo, {from_centre(a), from_centre(b)});
+        on_square += transmitted_by(facets, wo, m, ior) / (4 * per_side);
+      }
     }
+    sum += (outer * outer - inner * inner) * on_square;
   }
-  return static_cast<float>(sum / (n * n));
+  return static_cast<float>(sum);
 }
 
 /// The table of 1 - transmitted(). Each thread remembers the last one, because hits ask for it.
