@@ -8,6 +8,15 @@
 namespace lacuna::gltf {
 namespace {
 
+/// Whether facets, those of the parts too, have two widths, along and across a tangent.
+bool two_widths(const LacunaMaterial& l) {
+  return l.alpha.x != l.alpha.y ||
+         std::ranges::any_of(l.parts, [](const LacunaMaterial::Part& part) {
+           const Material& m = *part.material;
+           return m.lacuna ? two_widths(*m.lacuna) : m.extensions.anisotropy.strength > 0;
+         });
+}
+
 /// Which of TEXCOORD_0 and _1 the material's textures read, or the direction of its facets.
 std::array<bool, 2> uv_sets_used(const Material& m) {
   std::array<bool, 2> used{};
@@ -17,6 +26,12 @@ std::array<bool, 2> uv_sets_used(const Material& m) {
   m.for_each_scattering_texture(use);
   use(m.emission_texture);
   use(m.normal_texture);
+  if (m.lacuna) {
+    use(m.lacuna->bump);
+    if (two_widths(*m.lacuna)) {
+      used[static_cast<std::size_t>(m.lacuna->alpha_texture.uv_set)] = true;
+    }
+  }
   if (const Anisotropy& a = m.extensions.anisotropy; a.strength > 0) {
     used[static_cast<std::size_t>(a.texture.uv_set)] = true;
   }
@@ -111,7 +126,9 @@ void read_attributes(const Source& source, const Vertices& vertices,
                      const std::vector<std::uint32_t>& kept, const Material& material, Mesh& mesh,
                      Warnings& warnings) {
   read_uvs(source, kept, material, mesh, warnings);
-  const bool turned = material.normal_texture.used() || material.extensions.anisotropy.strength > 0;
+  const bool turned = material.normal_texture.used() ||
+                      material.extensions.anisotropy.strength > 0 ||
+                      (material.lacuna && two_widths(*material.lacuna));
   if (turned) read_tangents(source, vertices, kept, mesh, warnings);
   read_colors(source, kept, mesh, warnings);
 }

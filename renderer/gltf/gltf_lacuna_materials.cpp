@@ -14,9 +14,6 @@ namespace {
 using Type = LacunaMaterial::Type;
 constexpr std::string_view extension_name = "LACUNA_materials";
 
-constexpr Limits index_of_refraction{1e-3, 1e3};
-constexpr Limits largest_exponent{0, 1e7};
-
 /// A "type", and the members that only some types have.
 struct TypeRow {
   std::string_view name;
@@ -117,13 +114,16 @@ struct LacunaReader {
     out.shape = shape();
     out.alpha = alpha();
     if (out.shape == FacetShape::phong) {
-      const float width = std::sqrt(2 / (number("exponent", 0, largest_exponent) + 2));
+      const float exponent = number("exponent", 0, non_negative);
+      if (!(exponent <= 1e7F)) in.refuse("exponent", "a number from 0 to 1e7");
+      const float width = std::sqrt(2 / (exponent + 2));
       out.alpha = {width, width};
     }
     out.alpha_texture =
         textures.reference(in, "alphaTexture", Texture::Encoding::linear, out.alpha.length2() > 0);
     if (may_have("ior")) {
-      out.ior = static_cast<float>(in.number("ior", index_of_refraction));
+      out.ior = static_cast<float>(in.number("ior", non_negative));
+      if (!(out.ior >= 1e-3F && out.ior <= 1e3F)) in.refuse("ior", "a number from 0.001 to 1000");
     }
     if (row.type == Type::conductor) {
       out.eta = required_colour("eta");

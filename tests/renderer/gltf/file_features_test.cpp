@@ -342,7 +342,7 @@ TEST(Features, AreOnThePage) {
 /// The extensions that sources of renderer/gltf name, but for the table itself.
 std::set<std::string> extensions_in_sources() {
   std::set<std::string> names;
-  const std::regex name("\"((KHR|EXT|MSFT)_[A-Za-z_]+)\"");
+  const std::regex name("\"((KHR|EXT|MSFT|LACUNA)_[A-Za-z_]+)\"");
   const std::filesystem::path folder = std::string(LACUNA_SOURCE_DIR) + "/renderer/gltf";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().filename() == "gltf_features.cpp") continue;

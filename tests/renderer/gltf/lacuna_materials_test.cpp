@@ -77,10 +77,10 @@ TEST(LacunaMaterials, EveryMemberArrives) {
 
 TEST(LacunaMaterials, RefusesWhatIsNotAllowed) {
   const std::vector<std::pair<Json, std::string>> cases{
-      {{{"type", "plastik"}}, "found \"plastik\"; allowed: \"diffuse\""},
+      {{{"type", "plastik"}}, "found string \"plastik\"; allowed: \"diffuse\""},
       {{{"type", "phong"}, {"ior", 1.5}}, "unknown member \"ior\""},
       {{{"type", "conductor"}, {"eta", {1, 1, 1}}}, "k is missing"},
-      {{{"type", "dielectric"}, {"ior", 0}}, "found number 0"},
+      {{{"type", "dielectric"}, {"ior", 0}}, "allowed: a number from 0.001 to 1000"},
       {{{"type", "plastic"}, {"ior", 1.5}, {"alpha", {0.1, 0.2, 0.3}}}, "a number, or two"},
       {{{"type", "plastic"}, {"ior", 1.5}, {"alpha", 1.5}}, "found number 1.5"},
       {{{"type", "ward"}, {"variant", "blinn"}}, "\"balanced\""},
