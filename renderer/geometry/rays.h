@@ -42,12 +42,12 @@ struct RecordedRay {
 /// rejects and counts them.
 class RayCaster {
  public:
-  /// Copies the triangles of `scene`, those of prototypes once, and keeps a pointer to `scene`, for
-  /// instances and alpha: masked points below the cutoff are not hit, and points of alphaMode BLEND
-  /// with probability alpha, independently for each ray. Only meshes whose alpha can be below 1 get
-  /// a filter. Builds with the thread count of `pool`. Throws SceneError, std::bad_alloc if Embree
-  /// runs out of memory, and Stopped.
-  RayCaster(const SceneData& scene, const ThreadPool& pool);
+  /// Shares the triangles of `scene` with Embree, those of prototypes once, and keeps a pointer to
+  /// it. Makes room behind each mesh's positions. Masked points below the cutoff are not hit, and
+  /// points of alphaMode BLEND with probability alpha, independently for each ray. Only meshes
+  /// whose alpha can be below 1 get a filter. Builds with the thread count of `pool`. Throws
+  /// SceneError, std::bad_alloc if Embree runs out of memory, and Stopped.
+  RayCaster(SceneData& scene, const ThreadPool& pool);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;

@@ -33,7 +33,9 @@ struct Counts {
 /// are dropped.
 std::vector<V3f> world_positions(const Source& source, const Vertices& vertices,
                                  const std::vector<std::uint32_t>& kept, const V3d& origin) {
-  std::vector<V3f> out(kept.size());
+  std::vector<V3f> out;
+  out.reserve(kept.size() + 1);  // as RayCaster wants it
+  out.resize(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const V3d world = vertices.world(kept[i]);
     for (int k = 0; k < 3; ++k) {

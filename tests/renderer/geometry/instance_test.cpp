@@ -201,7 +201,7 @@ Segments blocked_segments(float share) {
   Rng rng(5, 0, 0, Rng::Purpose::test);
   Segments s;
   for (int i = 0; i < 600; ++i) {
-    const SceneData data = placed_triangle(rng);
+    SceneData data = placed_triangle(rng);
     const TriangleShape shape(TriangleShape(data.meshes[0], 0), data.instances[0]);
     if (!(shape.area() > 0)) continue;
     const RayCaster rays(data, pool);

@@ -78,7 +78,7 @@ Hits leave_triangles(Kind kind, float share) {
   Rng rng = random_numbers();
   Hits hits;
   for (int i = 0; i < 300; ++i) {
-    const SceneData data = random_triangle(kind, rng);
+    SceneData data = random_triangle(kind, rng);
     const TriangleShape shape(data.meshes[0], 0);
     if (!(shape.area() > 0)) continue;
     const RayCaster rays(data, pool);
@@ -127,7 +127,7 @@ TEST(RayOffset, SegmentsEndBeforeTheirSurface) {
   int segments = 0, blocked = 0;
   for (int i = 0; i < 300; ++i) {
     const Kind kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
-    const SceneData data = random_triangle(kind, rng);
+    SceneData data = random_triangle(kind, rng);
     const TriangleShape shape(data.meshes[0], 0);
     if (!(shape.area() > 0)) continue;
     const RayCaster rays(data, pool);
