@@ -195,7 +195,7 @@ std::shared_ptr<ImportedTexture> picture(Context& context, const Parameters& par
                                          const std::string& file) {
   const auto path = context.find_file(file, parameters.place(), parameters.owner());
   if (!path) return nullptr;
-  const auto texture = std::make_shared<ImportedTexture>();
+  auto texture = std::make_shared<ImportedTexture>();
   texture->place = parameters.place().text();
   texture->file = *path;
   texture->srgb = !has_ending(file, {".exr", ".hdr", ".pfm"});
