@@ -80,6 +80,7 @@ class Bsdf {
         ns_(dot(ns, ng) < 0 ? -ns : ns),
         flat_((ns_ - ng).length2() < 1e-12F),
         lobes_(lobes) {}
+  Bsdf(const Lobes&&, const V3f&, const V3f&) = delete;
 
   /// Whether set_tangents() must be called: the facets have two widths.
   bool needs_tangents() const {

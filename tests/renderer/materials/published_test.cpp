@@ -303,7 +303,7 @@ float tolerance_of(const PublishedMean& mean) {
   const bool plastic = mean.params.exact->base == ExactSurface::Base::plastic;
   const bool tabulated = (plastic && mean.params.exact->roughness.widths().x > 0) ||
                          (coating && coating->roughness.widths().x > 0);
-  return tabulated ? 6e-3F : 1e-3F;
+  return tabulated ? 5e-3F : 1e-3F;
 }
 
 TEST_P(Published, Furnace) {

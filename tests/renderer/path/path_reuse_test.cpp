@@ -69,7 +69,7 @@ TEST_F(SharedLight, CountsWhatIsScatteredAndNotFinite) {
   broken.metallic = broken.transmission = broken.f90 = 0;
   broken.f0 = Rgb(0, 0, 0);
   Vertex& v = batch_.vertex(sharing_[0], 2);
-  v.bsdf.emplace(Lobes(broken), v.side(), v.side());
+  v.bsdf.emplace(broken, v.side(), v.side());
   gather(sharing_[0], 1);
   EXPECT_TRUE(is_black(finish()));
   EXPECT_GT(counters_.rejected, 0U);

@@ -21,7 +21,7 @@ Vertex diffuse_vertex(const V3f& x, const V3f& ng, const V3f& wp) {
   v.wp = wp;
   v.throughput = Rgb(1, 1, 1);
   v.p_fwd = Pdf<Area>(1.0F);
-  v.bsdf.emplace(Lobes(grey), ng, ng);
+  v.bsdf.emplace(grey, ng, ng);
   return v;
 }
 
