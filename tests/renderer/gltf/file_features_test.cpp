@@ -329,7 +329,8 @@ TEST(Features, RequiredButLeftOutAreRefusedWithARemedy) {
     load(b);
     FAIL() << "not refused";
   } catch (const SceneError& e) {
-    EXPECT_NE(std::string(e.what()).find("gltf-transform ktxdecompress"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("gltf-transform ktxdecompress"), std::string::npos)
+        << e.what();
   }
 }
 

@@ -81,7 +81,7 @@ TEST(GuidedDepth, PathTracingHasTheMeanOfAWhiteFurnace) {
   }
 }
 
-TEST(GuidedDepth, BidirectionalPathTracingHasTheMeanOfAWhiteFurnace) {
+TEST(LongGuidedDepth, BidirectionalPathTracingHasTheMeanOfAWhiteFurnace) {
   for (const auto& [name, guide] : test::guides()) {
     SCOPED_TRACE(name);
     expect_mean_one(guided_bdpt(guide, 6), 6);
@@ -213,7 +213,7 @@ void expect_same_with_guided_light(S settings) {
   EXPECT_LT(all.standard_error(), 0.04) << "the test has no power";
 }
 
-TEST(GuidedDepth, LightPathsMakeThePictureThatUnguidedOnesMake) {
+TEST(LongGuidedDepth, LightPathsMakeThePictureThatUnguidedOnesMake) {
   expect_same_with_guided_light(LightSettings{});
   expect_same_with_guided_light(BdptSettings{});
   BdptSettings uniform;
@@ -223,7 +223,7 @@ TEST(GuidedDepth, LightPathsMakeThePictureThatUnguidedOnesMake) {
   expect_same_with_guided_light(PhotonMapSettings{});
 }
 
-TEST(GuidedDepth, LightPathsOfManyEdgesAreNotDark) {
+TEST(LongGuidedDepth, LightPathsOfManyEdgesAreNotDark) {
   LightSettings light{PathLengths{.max_depth = 100}};
   light.light_paths = 64;
   expect_few_dark([&](int seed) { return brightness(with_guided_light(light), 100, seed, 6); });
