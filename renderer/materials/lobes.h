@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "renderer/core/boxed.h"
 #include "renderer/core/vec.h"
 #include "renderer/geometry/medium.h"
 #include "renderer/materials/coating.h"
@@ -86,7 +87,7 @@ struct Lobes {
   Layer layer;  ///< used if facets_compete()
   Interface interface;
   const Medium* medium = nullptr;  ///< behind the surface
-  std::optional<FurtherLobes> further;
+  Boxed<FurtherLobes> further;
 
  private:
   static bool has_further(const SurfaceParams& p) {
