@@ -253,7 +253,8 @@ std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, double u_lobe, const V
   } else {
     s = {eval_any(wo, wi, transport), pdf_any(wo, wi, transport).value};
   }
-  if (!(s.pdf > 0)) return std::nullopt;
+  // Ward's density has a pole at grazing angles.
+  if (!(s.pdf > 0) || std::isinf(s.pdf)) return std::nullopt;
   return BsdfSample{wi, s.f / s.pdf, Pdf<SolidAngle>(s.pdf), false, drawn->transmitted};
 }
 
