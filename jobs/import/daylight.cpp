@@ -86,7 +86,7 @@ Rgb without_negatives(const Rgb& c) {
 
 /// Adds the sun's disk by points on a spiral over it, each with an equal part of its power.
 void add_sun(const Daylight& d, const M44d& to_world, LinearPicture& picture) {
-  constexpr double golden = 2.399963229728653;  // radians: the points of a spiral do not line up
+  const double golden = pi * (3 - std::sqrt(5.0));  // the angle of Vogel's spiral
   const Rgb radiance = sun_radiance(std::acos(std::clamp(d.to_sun.y, -1.0, 1.0)), d.turbidity);
   const double flux = d.sun_scale * 2 * pi * (1 - std::cos(sun_radius));
   const double least_cos = std::cos(std::min(sun_radius * d.radius_scale, pi));

@@ -12,7 +12,7 @@ ImportedScene read_pbrt(const std::filesystem::path& file, MissingFiles missing)
   pbrt::Reader reader(file, version.value_or(pbrt::Version::v4));
   if (!version) {
     reader.context().approximated({std::make_shared<const std::string>(file.filename()), 1}, "file",
-                                  "read as one of pbrt-v4, since nothing in it tells the version");
+                                  "read as pbrt-v4: no statement of it shows the version");
   }
   reader.read();
   const auto& gone = reader.context().missing();

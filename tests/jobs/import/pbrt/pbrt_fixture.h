@@ -52,7 +52,7 @@ inline void expect_colour(const Rgb& a, const Rgb& b, double tolerance = 1e-5) {
   expect_near(V3d(a), V3d(b), tolerance);
 }
 
-/// A film that tells the version.
+/// A film that only this version has.
 inline const std::string v3_film =
     "Film \"image\" \"integer xresolution\" 64 \"integer yresolution\" 32\n";
 inline const std::string v4_film =

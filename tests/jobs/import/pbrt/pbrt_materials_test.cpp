@@ -276,7 +276,7 @@ TEST(PbrtMaterials, TheVersionIsThatOfTheFirstStatementThatTells) {
   EXPECT_NEAR(alpha("Texture \"c\" \"color\" \"constant\" ", "conductor"), .46174, 1e-4);
   EXPECT_NEAR(alpha("Texture \"color\" \"spectrum\" \"constant\" ", "conductor"), std::sqrt(.1),
               1e-6);
-  EXPECT_NE(noted(PbrtFolder().import("WorldBegin")).find("nothing in it tells"),
+  EXPECT_NE(noted(PbrtFolder().import("WorldBegin")).find("no statement of it shows"),
             std::string::npos);
 }
 
