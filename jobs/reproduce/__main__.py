@@ -11,7 +11,7 @@ import pathlib
 import sys
 
 import catalogue
-from harness import child, everything, kept, output, page
+from harness import child, code, everything, kept, output, page, stored
 from harness.run import Run
 
 
@@ -23,6 +23,10 @@ def arguments():
     parser.add_argument("--all", action="store_true", help="every entry, and one table of all claims; what was measured "
                         "before with the same programs, scenes and entries is kept, so that it may be stopped")
     parser.add_argument("--kept", action="store_true", help="with --all: measures nothing, shows what was measured before")
+    parser.add_argument("--stale", action="store_true", help="lists the results in the tree whose code has changed since; "
+                        "with --write marks them on the page")
+    parser.add_argument("--run", action="store_true", help="with --stale: measures each of them again, quick or full as it "
+                        "was, and puts it into the tree")
     parser.add_argument("--write", action="store_true", help="puts what was found into docs/reproduction, and writes "
                         "docs/reproduction.md of all that is there")
     parser.add_argument("--json", action="store_true", help="prints JSON")
@@ -33,8 +37,12 @@ def arguments():
         parser.error(f"--all and {options.name}: one of the two")
     if not options.all and options.kept:
         parser.error("--kept: with --all only")
-    if options.write and options.name is None and not options.all:
-        parser.error("--write: with --all or NAME")
+    if options.stale and (options.all or options.full or options.name is not None):
+        parser.error("--stale: without NAME, --all and --full")
+    if options.run and not options.stale:
+        parser.error("--run: with --stale only")
+    if options.write and options.name is None and not (options.all or options.stale):
+        parser.error("--write: with --all, --stale or NAME")
     return options
 
 
@@ -56,6 +64,21 @@ def write(runs):
     return 0
 
 
+def stale(options):
+    """Lists the stale results; with --run measures them again. 0, or the exit code of the first that failed."""
+    runs = page.stale(list(stored.outcomes(catalogue.ENTRIES)))
+    if not options.run:
+        rows = [(run.entry.name, run.version, run.commit, " and ".join(code.changed(run))) for run in runs]
+        show(options, lambda: output.table_text(("ENTRY", "VERSION", "MEASURED AT", "CHANGED SINCE"), rows), lambda: rows)
+        return write([]) if options.write else 0
+    options.write = True
+    for run in runs:
+        options.full = run.full
+        if (failed := reproduce(run.entry, options)) not in (0, 1):
+            return failed
+    return 0
+
+
 def reproduce(entry, options):
     try:
         child.build(entry.targets)
@@ -65,15 +88,15 @@ def reproduce(entry, options):
         error(failed)
         return failed.code
     kept.keep(run)
-    if options.write and (code := write([run])) != 0:
-        return code
+    if options.write and (failed := write([run])) != 0:
+        return failed
     show(options, lambda: output.run_text(run), lambda: output.run_json(run))
     return 0 if run.complete and not run.missed else 1
 
 
 def reproduce_all(options):
     """Every entry; where it is interrupted, the table of what is done by then."""
-    outcomes, code = [], 0
+    outcomes, exit_code = [], 0
     try:
         if not options.kept:
             child.build(sorted({target for entry in catalogue.ENTRIES for target in entry.targets}))
@@ -81,12 +104,12 @@ def reproduce_all(options):
             outcomes.append(outcome)
     except (child.Failed, KeyboardInterrupt) as stopped:
         error(f"{stopped or 'interrupted'}; the same command continues")
-        code = stopped.code if isinstance(stopped, child.Failed) and stopped.code not in everything.STOPPED else 75
+        exit_code = stopped.code if isinstance(stopped, child.Failed) and stopped.code not in everything.STOPPED else 75
     if options.write:
-        code = write([o.run for o in outcomes if o.run is not None]) or code
+        exit_code = write([o.run for o in outcomes if o.run is not None]) or exit_code
     show(options, lambda: everything.text(outcomes), lambda: everything.value(outcomes))
-    if code != 0:
-        return code
+    if exit_code != 0:
+        return exit_code
     built = [o for o in outcomes if o.entry.built]
     return 0 if all(o.run is not None and o.run.complete and not o.run.missed for o in built) else 1
 
@@ -95,6 +118,8 @@ def main():
     options = arguments()
     if options.all:
         return reproduce_all(options)
+    if options.stale:
+        return stale(options)
     if options.name is None:
         show(options, lambda: output.list_text(catalogue.ENTRIES), lambda: output.list_json(catalogue.ENTRIES))
         return 0

@@ -87,7 +87,7 @@ def measure_approximated(run):
 
 @ENTRIES.measured(
     "noel-mapping", "Noel 2015, 7.4.2.1, which expects it and measures nothing",
-    "every method that uses the node mapping grid gains from one by visibility", "analysis with mapping: visible",
+    "every method that uses the node mapping grid gains from one by visibility", "path, bdpt, sppm, many_lights with mapping: visible",
     tuple(gain_claim(method, scene) for method in SAMPLED for scene in SAMPLED_SCENES) +
     tuple(gain_claim(how, view) for how in APPROXIMATED for view in APPROXIMATED_VIEWS),
     sweep=mapping_sweep)

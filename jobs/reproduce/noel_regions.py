@@ -333,7 +333,7 @@ GUIDES_92 = {"portals": "portals", "face irradiance": "face_irradiance"}
 @ENTRIES.measured(
     "noel-fig-92", "Noel 2015, Fig. 92, p. 156, and section 10.4",
     "door: where regions meet, the noise changes at once; where regions are mixed, it does not",
-    "path with guide: portals, face_irradiance",
+    "path with guide: portals, face_irradiance; inspect",
     (*(claim for title in GUIDES_92 for claim in (
         at_least(step_quantity(title), 1), at_least(f"{title}: step as published / with mixing", 1))),
      beside(step_quantity("BSDF sampling"))))

@@ -91,7 +91,7 @@ def fig_20_sweep(full):
 
 @ENTRIES.measured(
     "noel-fig-20", "Noel 2015, Fig. 20, p. 48",
-    "less noise with bidirectional path tracing than with path tracing after 90 s", "bdpt",
+    "less noise with bidirectional path tracing than with path tracing after 90 s", "path; bdpt",
     (at_least("error of path tracing / of bidirectional, at equal time", 1),), sweep=fig_20_sweep)
 def fig_20(run):
     """Path tracing against bidirectional path tracing with caustics of a small lamp."""
@@ -241,7 +241,7 @@ def fig_18(run):
 
 @ENTRIES.measured(
     "noel-fig-19", "Noel 2015, Fig. 19, p. 47",
-    "multiple importance sampling has low variance at every point: never that of the worse strategy", "path",
+    "multiple importance sampling has low variance at every point: never that of the worse strategy", "path; bdpt",
     tuple(claim(f"{place}: variance weighted / of the {strategy} strategy", *figure) for place in PLACES
           for claim, strategy, figure in ((at_most, "worse", (1,)), (beside, "better", ()))))
 def fig_19(run):
@@ -314,7 +314,7 @@ FIG_25 = {
 
 @ENTRIES.measured(
     "noel-fig-25", "Noel 2015, Fig. 25, p. 58",
-    "photon mapping stays blurred, progressive photon mapping converges to the picture", "photon_map; sppm",
+    "photon mapping stays blurred, progressive photon mapping converges to the picture", "photon_map; sppm; vcm; path; bdpt; many_lights",
     (at_most("error of progressive / of photon mapping, at equal time", 1),))
 def fig_25(run):
     """Each method at two times, against bidirectional path tracing: the error of photon mapping levels off."""
@@ -356,7 +356,7 @@ METROPOLIS_SCENES = {"door": {"scene": "door/scene.glb", "camera": "corner"},
 @ENTRIES.measured(
     "noel-metropolis", "Noel 2015, 4.6, which measures nothing; Veach and Guibas 1997",
     "Metropolis light transport has less error behind doors and round corners than independent samples",
-    "metropolis",
+    "metropolis; bdpt; path",
     tuple(at_least(f"MSE of {other} / of path_space, {scene}", 1)
           for scene in METROPOLIS_SCENES for other in ("bdpt skeleton", "multiplexed", "path")))
 def metropolis(run):

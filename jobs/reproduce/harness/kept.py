@@ -3,25 +3,16 @@
 import dataclasses
 import json
 import os
-import pathlib
-import sys
 
-from harness import identity, output
+from harness import code, identity, output
 from harness.measured import Measured
 from harness.run import KINDS, Picture, Row, Run, Table
-
-
-def _sources(entry):
-    """The hashes of the Python that measures an entry."""
-    module = pathlib.Path(sys.modules[entry.measure.__module__].__file__)
-    harness = sorted(pathlib.Path(__file__).parent.glob("*.py"))
-    return {file.name: identity.file_hash(file) for file in (module, *harness)}
 
 
 def _key(entry, inputs):
     """Of what a result depends on: the programs, the Python that measures, and the scenes that were used."""
     now = {name: identity.scene_file(name) for name in inputs}
-    return identity.key(identity.programs(entry.targets), _sources(entry),
+    return identity.key(identity.programs(entry.targets), code.python(entry.measure),
                         {name: file and identity.file_hash(file) for name, file in now.items()})
 
 
@@ -55,7 +46,7 @@ def fill(run, value):
     run.tables = [Table(tuple(t["columns"]), t["rows"]) for t in value["tables"]]
     run.notes = value["notes"]
     run.shown = [Picture(**picture) for picture in value["pictures"]]
-    run.seconds, run.complete, run.commit = value["seconds"], value["complete"], value["commit"]
+    run.seconds, run.complete, run.commit, run.code = (value[key] for key in ("seconds", "complete", "commit", "code"))
     return run
 
 

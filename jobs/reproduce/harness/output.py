@@ -76,7 +76,7 @@ def run_json(run):
             "seconds": run.seconds, "complete": run.complete, "rows": [row_json(r) for r in run.rows],
             "tables": [dataclasses.asdict(t) for t in run.tables], "notes": run.notes,
             "general_notes": general_notes(run),
-            "pictures": [dataclasses.asdict(p) for p in run.shown], "commit": run.commit}
+            "pictures": [dataclasses.asdict(p) for p in run.shown], "commit": run.commit, "code": run.code}
 
 
 def row_json(row):

@@ -1,6 +1,6 @@
 """docs/reproduction.md: the table of every claim, and what each entry found."""
 
-from harness import child, everything, output, stored
+from harness import child, code, everything, output, stored
 from harness.run import KINDS
 from harness.verdict import MISSED
 
@@ -57,6 +57,18 @@ def _found(outcome):
     return "\n\n".join([*parts, "\n".join(f"- {_escaped(note)}" for note in (*run.notes, *output.general_notes(run)))])
 
 
+STALE = "Measured with other code than that of the tree (`./dev reproduce --stale`): "
+
+
+def _stale(outcomes):
+    return STALE + (", ".join(f"`{run.entry.name}`" for run in stale(outcomes)) or "none") + "."
+
+
+def stale(outcomes):
+    """The runs whose code has changed since they were measured."""
+    return [o.run for o in outcomes if o.run and code.changed(o.run)]
+
+
 def text(outcomes):
     """The page of what the tree has (stored.py)."""
     counts = ", ".join(f"{n} {verdict}" for verdict, n in everything.verdicts(outcomes).items()) or "none"
@@ -69,6 +81,7 @@ def text(outcomes):
         "interval bears the claim out, `missed` where none of it does, `not told apart` between the two, and `one run` where "
         "a number has no interval; figures without a bound are information.",
         f"Verdicts: {counts}.",
+        _stale(outcomes),
         *_claims(outcomes),
         "## Missed claims",
         _missed(outcomes),

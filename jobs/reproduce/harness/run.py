@@ -4,7 +4,7 @@ import dataclasses
 import json
 import time
 
-from harness import child, identity
+from harness import child, code, identity
 from harness.measured import CONFIDENCE
 from harness.verdict import MISSED, beside, verdict
 
@@ -64,6 +64,7 @@ class Run:
         self.tables, self.notes, self.complete = [], [child.machine()], True
         self.shown = []  # the Pictures for the page
         self.commit = identity.commit()
+        self.code = {}  # code.of() the entry, once it is measured
         self.inputs = {}  # the hash of every scene and reference that was used
         self.seconds = 0.0
         self._rows = {claim.quantity: Row(claim) for claim in entry.claims}
@@ -84,6 +85,7 @@ class Run:
     def measure(self):
         """Calls the entry's function and takes its time, what is rendered already not included."""
         start = time.monotonic()
+        self.code = code.of(self.entry)
         self.entry.measure(self)
         self.seconds = time.monotonic() - start
 
@@ -148,10 +150,10 @@ class Run:
         file, runs = folder / f"{name}.json", folder / f"{name}.sweep"
         self.runs = runs / "runs"
         file.write_text(json.dumps(sweep, indent=2) + "\n")
-        code = child.lacuna("sweep", file, "--out", runs, may_fail=True)[1]
-        if code not in (0, 1) or not runs.is_dir():  # 1: some runs failed; the report tells how many
-            raise child.Failed(f"lacuna sweep ended with {code}: {file}", code)
-        self.complete = self.complete and code == 0
+        exit_code = child.lacuna("sweep", file, "--out", runs, may_fail=True)[1]
+        if exit_code not in (0, 1) or not runs.is_dir():  # 1: some runs failed; the report tells how many
+            raise child.Failed(f"lacuna sweep ended with {exit_code}: {file}", exit_code)
+        self.complete = self.complete and exit_code == 0
         answers = child.lacuna_json("report", runs)
         if answers["confidence"] != CONFIDENCE:
             raise child.Failed(f"intervals of {answers['confidence']} and of {CONFIDENCE} would be mixed")

@@ -50,10 +50,19 @@ class Command(unittest.TestCase):
     def test_options_of_all_need_it(self):
         for options, said in ((("--all", "noel-table-1"), "--all and noel-table-1: one of the two"),
                               (("--kept",), "--kept: with --all only"),
-                              (("--write",), "--write: with --all or NAME")):
+                              (("--stale", "--full"), "--stale: without NAME, --all and --full"),
+                              (("--run",), "--run: with --stale only"),
+                              (("--write",), "--write: with --all, --stale or NAME")):
             done = reproduce(*options)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn(said, done.stderr)
+
+    def test_stale_results_are_listed_with_what_has_changed(self):
+        done = reproduce("--stale")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.splitlines()[0].split(), "ENTRY VERSION MEASURED AT CHANGED SINCE".split())
+        for line in done.stdout.splitlines()[1:]:
+            self.assertRegex(line, r"^[a-z0-9-]+ +(quick|full) +[0-9a-f]{7}.* (renderer|python|renderer and python)$")
 
     def test_all_that_is_kept_is_one_table_of_every_claim(self):
         with tempfile.TemporaryDirectory() as folder:
