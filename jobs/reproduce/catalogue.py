@@ -2,19 +2,26 @@
 
 import kol
 import kol_front
+import kol_lights
 import nabata
 import noel_clusters
 import noel_connections
+import noel_distributions
+import noel_gates
 import noel_guides
 import noel_mapping
+import noel_node_maps
+import noel_overlays
+import noel_portals
 import noel_regions
 import noel_shadows
 import noel_shape
+import noel_stand_ins
 import popov
 import references
 
-MODULES = (references, noel_shape, noel_shadows, noel_clusters, noel_guides, noel_regions, noel_mapping, noel_connections, popov,
-           nabata, kol, kol_front)
+MODULES = (references, noel_shape, noel_overlays, noel_shadows, noel_gates, noel_node_maps, noel_clusters, noel_guides, noel_regions,
+           noel_portals, noel_mapping, noel_connections, noel_stand_ins, noel_distributions, popov, nabata, kol, kol_lights, kol_front)
 ENTRIES = tuple(entry for module in MODULES for entry in module.ENTRIES)
 
 

@@ -21,7 +21,7 @@ PARTICLES = {"count": 4096, "power": 3e5, "color": [1, 0.8, 0.5], "low": [0.1, 0
              "alone": True}
 SCENES = {
     "sponza": {"/scene": "sponza/scene.glb", "/camera": "atrium", "/particles": None},
-    "hairball": {"/scene": "hairball.glb", "/camera": "front", "/particles": None},
+    "hairball": {"/scene": "hairball_2800k.glb", "/camera": "front", "/particles": None},
     "door": {"/scene": "door/scene.glb", "/camera": "corner", "/particles": None},
     "particles": {"/scene": "sponza/scene.glb", "/camera": "atrium", "/particles": PARTICLES},
 }

@@ -7,14 +7,17 @@ from harness.entry import Entries
 from harness.many_lights import TESTS, Comparison, cached, published, shown, visibility
 from harness.measured import Measured, geometric_mean_of, mean_of
 from harness.run import KINDS, Table
-from harness.verdict import at_least, at_most, beside
+from harness.verdict import at_least, at_most, beside, near
 
 ENTRIES = Entries()
 NEEDS = "many_lights with visibility: probabilistic, roulette, exact"
 SEEDS = 3
-# Scene, and of probabilistic visibility and of Veach's roulette the speed-up over exact, and the share of tests saved.
-SCENES = (("San Miguel", 2.60, 1.21, 0.88, 0.64), ("Hairball", 6.08, 2.45, 0.90, 0.63),
-          ("Sponza", 2.12, 1.47, 0.90, 0.74), ("Museum", 2.56, 1.45, 0.90, 0.83))
+# Of probabilistic visibility and of Veach's roulette the speed-up over exact, the share of tests saved, the tests of a pixel, the
+# seconds and the RMSE.
+TABLES = {"San Miguel": ((2.60, 0.88, 65185, 2417, 1.70e-3), (1.21, 0.64, 196818, 5204, 1.09e-4)),
+          "Hairball": ((6.08, 0.90, 10401, 933, 1.43e-4), (2.45, 0.63, 37371, 2310, 5.72e-5)),
+          "Sponza": ((2.12, 0.90, 31485, 916, 2.61e-3), (1.47, 0.74, 78820, 1320, 1.19e-3)),
+          "Museum": ((2.56, 0.90, 9724, 488, 8.81e-4), (1.45, 0.83, 16517, 858, 2.75e-4))}
 
 
 # Why some of these are missed.
@@ -22,16 +25,23 @@ FEW_LIT = ("another scene: exact visibility traces rays to 5 or 6 % of the light
            "tests saved what is left is the time of contributions, which all methods take alike")
 EASY = ("Veach's roulette saves more tests here than in the paper (its row below): contributions differ more from light to "
         "light, and small ones are left out without knowing what is visible; the speed-up over exact is reached")
+FEW_TESTS = ("more tests are saved than in the paper, and noise is larger for it. The rest is not known: neither the cache points "
+             "(nabata-fig-3) nor the random numbers (nabata-departures) explain it")
 WHY_SPEED_UP = {"Museum": FEW_LIT}
 WHY_OVER_VEACH = {"San Miguel": f"another scene; {EASY}", "Sponza": EASY, "Museum": FEW_LIT}
 
 
-def of_scene(scene, speed_up, speed_up_veach, saved, saved_veach):
+def of_scene(scene):
     name = shown(scene)
+    (speed_up, saved, tests, seconds, rmse), (speed_up_veach, saved_veach, tests_veach, seconds_veach, rmse_veach) = TABLES[scene]
     return (at_least(f"{name}: speed-up", speed_up, why=WHY_SPEED_UP.get(scene, "")),
-            beside(f"{name}: speed-up, Veach", speed_up_veach),
+            at_least(f"{name}: speed-up, Veach", speed_up_veach),
             at_least(f"{name}: time of Veach / of probabilistic", speed_up / speed_up_veach, why=WHY_OVER_VEACH.get(scene, "")),
-            at_least(f"{name}: tests saved", saved), beside(f"{name}: tests saved, Veach", saved_veach))
+            at_least(f"{name}: tests saved", saved), at_least(f"{name}: tests saved, Veach", saved_veach),
+            at_most(f"{name}: tests of probabilistic / of Veach", tests / tests_veach, why=WHY_OVER_VEACH.get(scene, "")),
+            at_most(f"{name}: RMSE of probabilistic / of Veach", rmse / rmse_veach, why=FEW_TESTS),
+            at_least(f"{name}: MSE x time of Veach / of probabilistic", (rmse_veach / rmse) ** 2 * seconds_veach / seconds,
+                     why=FEW_TESTS))
 
 
 def both(scene, full, side=64):
@@ -46,18 +56,21 @@ def both(scene, full, side=64):
 @ENTRIES.measured(
     "nabata-table-1-2", "Nabata et al., Tables 1 and 2, section 5",
     "speed-up over all visibilities, and the share of visibility tests saved", NEEDS,
-    tuple(claim for scene in SCENES for claim in of_scene(*scene)))
+    tuple(claim for scene in TABLES for claim in of_scene(scene)))
 def table_1_2(run):
     """Time and tests of probabilistic visibility and of Veach's roulette against exact
     visibility, which traces its rays in packets and evaluates eight lights at a time; all with the same lights."""
     rows = []
-    for scene, *_ in SCENES:
+    for scene in TABLES:
         c = Comparison(run, scene, both(scene, run.full), SEEDS)
         for which in KINDS:
             own, veach = f"probabilistic-{which}", f"roulette-{which}"
             for quantity, value in (("speed-up", c.speed_up(own)), ("speed-up, Veach", c.speed_up(veach)),
                                     ("time of Veach / of probabilistic", c.speed_up(own, over=veach)),
-                                    ("tests saved", c.saved(own)), ("tests saved, Veach", c.saved(veach))):
+                                    ("tests saved", c.saved(own)), ("tests saved, Veach", c.saved(veach)),
+                                    ("tests of probabilistic / of Veach", c.tests_over(own, veach)),
+                                    ("RMSE of probabilistic / of Veach", c.cost_over(own, veach, 0).root()),
+                                    ("MSE x time of Veach / of probabilistic", c.cost_over(veach, own))):
                 run.found(f"{shown(scene)}: {quantity}", **{which: value})
         for key in c.how:
             found = [] if key == "exact" else c.errors(key)
@@ -67,7 +80,27 @@ def table_1_2(run):
     run.tables.append(Table(("scene", "lights", "visibility", "CPU seconds", "speed-up", "tests saved",
                              "RMSE / mean", "relMSE"), rows))
     run.note("errors are against exact visibility of the same lights; tests saved: of all lights, as the paper counts, so "
-             "that exact visibility saves those of lights that face away")
+             "that exact visibility saves those of lights that face away. By the paper's own numbers Veach's roulette has less MSE "
+             "x time on every scene: what probabilistic visibility gains in time it loses in noise")
+
+
+@ENTRIES.measured(
+    "nabata-fig-2", "Nabata et al., Fig. 2, section 5",
+    "with the same lights the pictures differ from exact visibility by what is seen only at a hundred times the brightness", NEEDS,
+    tuple(at_most(f"{shown(scene)}: squared error on values of 0 to 255, {name}", 1)
+          for scene in TABLES for name in ("probabilistic", "Veach")))
+def fig_2(run):
+    """Pictures of every scene by both methods and by exact visibility. A difference of a step of 255 is not seen."""
+    side = 128
+    for scene in TABLES:
+        c = Comparison(run, scene, both(scene, run.full, side), SEEDS, share=0.1, side=side)
+        for which in KINDS:
+            for name, key in (("probabilistic", "probabilistic"), ("Veach", "roulette")):
+                run.found(f"{shown(scene)}: squared error on values of 0 to 255, {name}", **{which: mean_of(
+                    [e["display_mse"] for e in c.errors(f"{key}-{which}")])})
+        for key in ("probabilistic-published", "roulette-published", "exact"):
+            run.show(f"{scene}, {key}", run.place(c.name(key, 0)))
+    run.note("a tenth of the lights of Table 1; crops where quick")
 
 
 # What each departure from the paper does, one at a time, beginning with the published method.
@@ -102,31 +135,36 @@ def departures(run):
 
 
 POINTS = [125, 250, 500, 1000, 2000, 4000, 8000]  # of the whole picture
+LEVEL_OFF = ("the paper's error is that against path tracing, its 2000 are read off a curve, and its own Table 1 has 500 points on this scene. "
+             "Ours is against exact visibility of the same lights")
 LEVEL = 1.1  # the error has levelled off where twice the points make it less than this times smaller
 
 
 @ENTRIES.measured(
     "nabata-fig-3", "Nabata et al., Fig. 3, section 5",
     "error and time against the number of cache points: time is linear, error levels off at about 2000", NEEDS,
-    (beside("cache points from which on the error levels off", 2000),))
+    (near("cache points from which on the error levels off", 2000, why=LEVEL_OFF),
+     near("time of cache points, 8000 / 2000", 4)))
 def fig_3(run):
     """Time and error of probabilistic visibility on the hairball against the number of cache points. The error is that
     against exact visibility with the same lights; the paper's, against path tracing, also has the lights'."""
     side = 64
-    many_lights.render(run, "exact", many_lights.job("Hairball", visibility("exact"), run.full, 0.25, side))
+    run.repeated("exact", many_lights.job("Hairball", visibility("exact"), run.full, 0.25, side), SEEDS)
     for which in KINDS:
-        rows = []
+        rows, caching = [], {}
         for points in POINTS:
             here = points if run.full else max(1, round(points * side * side / (512 * 512)))
             how = published("probabilistic", here) if which == "published" else visibility("probabilistic", here)
-            name = f"{which}-{points}"
-            report = many_lights.render(run, name, many_lights.job("Hairball", how, run.full, 0.25, side))
-            rows.append((points, many_lights.seconds(report), report["integrator"]["visibility_cpu_seconds"],
-                         many_lights.errors(run, name, "exact")["rmse"]))
-        level = [a[0] for a, b in zip(rows, rows[1:]) if a[3] < LEVEL * b[3]]
+            reports = run.repeated(f"{which}-{points}", many_lights.job("Hairball", how, run.full, 0.25, side), SEEDS)
+            caching[points] = [r["integrator"]["visibility_cpu_seconds"] for r in reports]
+            rows.append((points, mean_of(list(map(many_lights.seconds, reports))), mean_of(caching[points]), geometric_mean_of(
+                [many_lights.errors(run, f"{which}-{points}-{seed}", f"exact-{seed}")["rmse"] for seed in range(SEEDS)])))
+        level = [a[0] for a, b in zip(rows, rows[1:]) if a[3].value < LEVEL * b[3].value]
         run.found("cache points from which on the error levels off", **{which: Measured(level[0]) if level else None})
+        run.found("time of cache points, 8000 / 2000",
+                  **{which: geometric_mean_of([a / b for a, b in zip(caching[8000], caching[2000])])})
         run.tables.append(Table((f"cache points, {which}", "CPU seconds", "of these for cache points", "RMSE"),
-                                [(n, f"{s:.3g}", f"{c:.3g}", f"{e:.3g}") for n, s, c, e in rows]))
+                                [tuple(map(str, row)) for row in rows]))
     run.note("a quarter of the lights of Table 1" + ("" if run.full else "; a crop, with its share of the cache points"))
 
 
@@ -135,7 +173,7 @@ AT = (0.1, 0.25, 0.5, 0.75, 0.9)
 
 @ENTRIES.measured(
     "nabata-fig-4", "Nabata et al., Fig. 4, section 5",
-    "Hairball: where lights are tested; seldom on plain walls, other than with Veach", NEEDS,
+    f"{shown('Hairball')}: where lights are tested; seldom on plain walls, other than with Veach", NEEDS,
     (at_most("median over the pixels of the share that is tested, probabilistic / Veach", 1),))
 def fig_4(run):
     """The share of the lights that each pixel of the hairball tests."""
@@ -164,10 +202,9 @@ TRIED = [2000, 4000, 8000, 16000, 32000]
 
 
 @ENTRIES.measured(
-    "nabata-fig-5", "Nabata et al., Fig. 5, section 5", "Hairball: lights within equal time (99 s, 101 s)", NEEDS,
-    (beside("lights, probabilistic", 13000), beside("lights, exact", 2000),
-     at_least("lights, probabilistic / exact", 13000 / 2000, why="exact visibility, too, has packets of rays and eight lights at a "
-              "time, so that what is saved weighs a little less: 5.9 in Table 1, where the paper has 6.1")))
+    "nabata-fig-5", "Nabata et al., Fig. 5, section 5", f"{shown('Hairball')}: lights within equal time (99 s, 101 s)", NEEDS,
+    (at_least("lights, probabilistic / exact", 13000 / 2000, why="exact visibility, too, has packets of rays and eight lights at a "
+              "time, so that what is saved weighs a little less: 5.9 in Table 1, where the paper has 6.1"),))
 def fig_5(run):
     """How many lights probabilistic visibility affords on the hairball in the time that exact visibility
     takes for 2000."""
@@ -189,10 +226,8 @@ def fig_5(run):
     limits = [timed(visibility("exact"), EXACT, seed) for seed in range(SEEDS)]
     lights = mean_of([n for n, _ in limits])
     rows = [("exact", str(lights), str(mean_of([t for _, t in limits])))]
-    run.found("lights, exact", ours=lights, published=lights)
     for which, how in (("published", published("probabilistic", points)), ("ours", visibility("probabilistic", points))):
         found = [affords(how, seed, limits[seed][1]) for seed in range(SEEDS)]
-        run.found("lights, probabilistic", **{which: mean_of([n for n, _ in found])})
         run.found("lights, probabilistic / exact", **{which: geometric_mean_of(
             [max(n, 1) / exact for (n, _), (exact, _) in zip(found, limits)])})
         rows += [(which, round(n), f"{t:.3g}") for n, t in found[0][1]]
@@ -239,7 +274,7 @@ GLOSSY = {"name": "white", "roughness": 0.4}
 @ENTRIES.measured(
     "nabata-fig-7", "Nabata et al., Fig. 7, section 5",
     f"{shown('Museum')}, glossy, 300k lights: time at like quality", NEEDS,
-    (beside("probabilistic", 1468, "s"), beside("exact", 3822, "s"), at_least("speed-up", 3822 / 1468, why=FEW_LIT)))
+    (at_least("speed-up", 3822 / 1468, why=FEW_LIT),))
 def fig_7(run):
     """Time of probabilistic against exact visibility where surfaces are glossy."""
     scene, side = "Museum", 48
@@ -248,8 +283,6 @@ def fig_7(run):
     c = Comparison(run, scene, how, SEEDS, share=300_000 / many_lights.SCENES[scene]["lights"], side=side,
                    material=GLOSSY)
     for which in KINDS:
-        run.found("probabilistic", **{which: c.seconds(which)})
-        run.found("exact", **{which: c.seconds("exact")})
         run.found("speed-up", **{which: c.speed_up(which)})
     run.tables.append(Table(("visibility", "lights", "CPU seconds", "tests saved", "RMSE / mean"), [
         (key, round(c.lights()), str(c.seconds(key)), str(c.saved(key)),

@@ -2,12 +2,11 @@
 that this project has, with every kind of connections, at the thesis' settings (`published`) and at the project's
 (`ours`)."""
 
-from harness import layers
 from harness.entry import Entries
-from harness.measured import Measured, error_at, exact, gain_at, geometric_mean_of, mean_of, speed_up_to, time_to
+from harness.measured import error_at, gain_at, geometric_mean_of, speed_up_to, time_to
 from harness.run import KINDS, Table, cell_with
-from harness.verdict import at_least, beside
-from noel_shadows import GRID, RADII
+from harness.verdict import at_least, near
+from noel_shadows import RADII
 
 ENTRIES = Entries()
 RESAMPLING = "bdpt with connections: skeleton, importance_cache"
@@ -129,85 +128,6 @@ def resampled(number, page, configuration, seconds, *claims):
             f"{configuration}: error after {seconds} s of BPT, SkelBPT and ICBPT", RESAMPLING, claims)
 
 
-SKELETON = OURS["SkelBPT"]
-
-
-def share_of_distributions(told):
-    """Of the CPU seconds of iterations; `told`: the integrator's part of a report."""
-    return told["distributions_cpu_seconds"] / sum(
-        told[f"{key}_cpu_seconds"] for key in ("light_pass", "distributions", "eye_pass"))
-
-
-def table_5_sweep(full):
-    scenes = (SCENES["door"], SCENES["sponza"], STAND_INS["Sibenik"])
-    value = resampling_sweep(full, {"SkelBPT": SKELETON}, scenes, seeds=1)
-    del value["compare_at"], value["baseline"], value["job"]["reference_iterations"]
-    value["job"]["analysis"] = GRID
-    value["axes"]["/analysis/node_radius"] = list(RADII.values())
-    value["zip"] = [{pointer: [s[pointer] for s in scenes] for pointer in ("/scene", "/camera", "/resolution")}]
-    value["job"]["budget"] = {"iterations": 16 if full else 4}
-    return value
-
-
-@ENTRIES.measured(
-    "noel-table-5", "Noel 2015, Table 5, p. 167", "nodes of the filtered skeleton, and nodes used per iteration",
-    "bdpt with connections: skeleton",
-    (beside("Door, nodes", 74), beside("Door, per iteration", 9), beside("Sponza, nodes", 666),
-     beside("Sponza, per iteration", 45), beside("Sibenik, nodes", 1420), beside("Sibenik, per iteration", 85)),
-    sweep=table_5_sweep)
-def table_5(run):
-    """Nodes of the filtered skeleton, and how many of them have distributions in an iteration."""
-    answers = run.answers(table_5_sweep(run.full))
-    for name, scene in (("Door", SCENES["door"]), ("Sponza", SCENES["sponza"]), ("Sibenik", STAND_INS["Sibenik"])):
-        for which, radius in RADII.items():
-            told = run.report(cell_with(answers, scene=scene["/scene"], node_radius=radius))["integrator"]
-            run.found(f"{name}, nodes", **{which: exact(told["nodes"])})
-            run.found(f"{name}, per iteration", **{which: Measured(told["nodes_used"])})
-        run.note(f"{name}: the distributions take {share_of_distributions(told):.1%} of an iteration")
-    run.note(f"{GRID['resolution']} voxels along the longest side, as in Table 1: the thesis does not tell those of Table 5")
-    run.note(f"Sibenik: {STAND_INS['Sibenik']['/scene']}, {STAND_IN}")
-
-
-def find_times(run, which, name, first, to):
-    """The rows of Table 6 of a scene. `to`: of each method its member of `to`; `first`: what the row of BPT is called."""
-    for method in ("BPT", "ICBPT", "SkelBPT"):
-        run.found(first if method == "BPT" else f"{name}, {method}", **{which: time_to(to[method])})
-        if method != "BPT":
-            run.found(f"{name}, {method}: speed-up", **{which: speed_up_to(to[method])})
-
-
-FIRST = {"Door": "Door to 0.01, BPT", "Sponza": "Sponza to 0.15, BPT"}
-
-
-@ENTRIES.measured(
-    "noel-table-6", "Noel 2015, Table 6, p. 169", "time to equal L1 error, and speed-up over BPT", RESAMPLING,
-    (beside("Door to 0.01, BPT", 3677.44, "s"), beside("Door, ICBPT", 7095.64, "s"),
-     beside("Door, SkelBPT", 2341.36, "s"), beside("Door, ICBPT: speed-up", 0.51),
-     at_least("Door, SkelBPT: speed-up", 1.57, why=COUNTS), beside("Sponza to 0.15, BPT", 1910.39, "s"),
-     beside("Sponza, ICBPT", 4731.15, "s"), beside("Sponza, SkelBPT", 675.98, "s"),
-     beside("Sponza, ICBPT: speed-up", 0.40), at_least("Sponza, SkelBPT: speed-up", 2.82, why=COUNTS),
-     at_least("Door, SkelBPT over uniform: speed-up", 1), at_least("Sponza, SkelBPT over uniform: speed-up", 1),
-     beside("Sibenik to 0.025, BPT", 1334.48, "s"), beside("Sibenik, ICBPT", 3114.65, "s"),
-     beside("Sibenik, SkelBPT", 1298.69, "s"), beside("Sibenik, ICBPT: speed-up", 0.42),
-     at_least("Sibenik, SkelBPT: speed-up", 1.02)))
-def table_6(run):
-    """Time to equal L1 error of bidirectional path tracing with paired connections (BPT), importance caching (ICBPT) and
-    the skeleton (SkelBPT); and the skeleton's gain alone, over resampling without any guidance with all else equal."""
-    for which in KINDS:
-        answers = all_methods(run, which)
-        for name, first in FIRST.items():
-            to = {method: resampled_cell(answers, name.lower(), value)["to"][-1] for method, value in METHODS[which].items()}
-            find_times(run, which, name, first, to)
-            plain, guided = time_to(to["uniform"]), time_to(to["SkelBPT"])
-            run.found(f"{name}, SkelBPT over uniform: speed-up", **{which: plain and guided and plain.ratio(guided)})
-        run.tables += [resampled_table(answers, scene, METHODS[which], f", {which}") for scene in RESAMPLED]
-        stand_in = {method: cell["to"][-1] for method, cell in on_stand_in(run, which, "Sibenik").items()}
-        find_times(run, which, "Sibenik", "Sibenik to 0.025, BPT", stand_in)
-    run.note(f"Sibenik: {STAND_INS['Sibenik']['/scene']}, {STAND_IN}")
-    run.note("CPU seconds of a core; equal error: the lowest MAE that every run of a scene reached; "
-             f"{answers['seeds']} runs each")
-
-
 @ENTRIES.measured(*resampled(98, 171, "door", 300, BPT, ICBPT))
 def fig_98(run):
     """BPT, SkelBPT and ICBPT on door at equal time."""
@@ -218,72 +138,6 @@ def fig_98(run):
 def fig_99(run):
     """BPT, SkelBPT and ICBPT on sponza at equal time."""
     measure_errors(run, "sponza")
-
-
-# Scenes of the kind of those that are not to be had (jobs/scenes/stand_ins.py), which are not those.
-STAND_INS = {
-    "Sibenik": {"/scene": "nave.glb", "/camera": "door", "/resolution": [768, 576], "/reference": "auto"},
-    "Apartment": {"/scene": "flat.glb", "/camera": "first room", "/resolution": [768, 576], "/reference": "auto"},
-    "Plants": {"/scene": "plants.glb", "/camera": "chair", "/resolution": [768, 576], "/reference": "auto"},
-}
-STAND_IN = ("stand-in: the thesis' scene is not to be had, and this one is of our own making (jobs/scenes); its numbers are "
-            "no reproduction of the paper's")
-
-
-def stand_in_sweep(full, which="published"):
-    three = {name: METHODS[which][name] for name in ("BPT", "ICBPT", "SkelBPT")}
-    return resampling_sweep(full, three, STAND_INS.values(), seeds=5 if full else 3, which=which)
-
-
-def on_stand_in(run, which, name):
-    """The cells of the three methods on the stand-in for a scene, and its table."""
-    answers = run.answers(stand_in_sweep(run.full, which), shared=f"noel-stand-ins-{which}")
-    three = {m: METHODS[which][m] for m in ("BPT", "ICBPT", "SkelBPT")}
-    cells = {m: cell_with(answers, scene=STAND_INS[name]["/scene"], integrator=value) for m, value in three.items()}
-    run.tables.append(Table((f"{STAND_INS[name]['/scene']}, {which}, CPU seconds", *cells), [
-        (f"{at['seconds']:.3g}", *(str(error_at(c["at"][i])) for c in cells.values()))
-        for i, at in enumerate(cells["BPT"]["at"])]))
-    return cells
-
-
-def measure_stand_in(run, name):
-    for which in KINDS:
-        cells = on_stand_in(run, which, name)
-        show_pictures(run, which, cells)
-        at = {m: c["at"][-1] for m, c in cells.items()}
-        best, cached = error_at(at["SkelBPT"]), error_at(at["ICBPT"])
-        found = {BPT.quantity: gain_at(at["SkelBPT"]), ICBPT.quantity: cached and best and cached.ratio(best)}
-        for claim in run.entry.claims:
-            run.found(claim.quantity, **{which: found[claim.quantity]})
-    run.note(STAND_IN)
-
-
-@ENTRIES.measured(*resampled(100, 173, "sibenik (similar to BPT)", 300, ICBPT, beside(BPT.quantity, 1)),
-                  sweep=stand_in_sweep)
-def fig_100(run):
-    """BPT, SkelBPT and ICBPT in a church at equal time."""
-    measure_stand_in(run, "Sibenik")
-
-
-# Why these are missed on stand-ins.
-OTHER_ROOMS = "another scene; why importance caching leads in these rooms was not examined"
-SHARED_POINTS = ("another scene: bulbs among the leaves light most of the picture directly. BPT draws a new, evenly spread point on an "
-                 "emitter at each vertex, resampled connections choose among those that all pixels share: with direct light alone "
-                 "(2 edges, 1 CPU second, one run) the ratio is 0.49, too")
-
-
-@ENTRIES.measured(*resampled(101, 174, "apartment (ICBPT beats BPT, SkelBPT both)", 900, BPT,
-                             at_least(ICBPT.quantity, 1, why=OTHER_ROOMS)))
-def fig_101(run):
-    """BPT, SkelBPT and ICBPT in rooms in a row at equal time."""
-    measure_stand_in(run, "Apartment")
-
-
-@ENTRIES.measured(*resampled(102, 175, "plants (ICBPT and SkelBPT similar, both beat BPT)", 900,
-                             at_least(BPT.quantity, 1, why=SHARED_POINTS)))
-def fig_102(run):
-    """BPT, SkelBPT and ICBPT among leaves at equal time."""
-    measure_stand_in(run, "Plants")
 
 
 @ENTRIES.measured(
@@ -301,20 +155,6 @@ def fig_103(run):
                 (f"{at['seconds']:.3g}", *(str(error_at(c["at"][i])) for c in cells.values()))
                 for i, at in enumerate(cells["BPT"]["at"])]))
     run.note(f"MAE, {answers['seeds']} runs each; the curves: lacuna report of the sweeps")
-
-
-@ENTRIES.measured(
-    "noel-fig-104", "Noel 2015, Fig. 104, p. 177",
-    "L1 error curves of 900 s: SkelBPT below BPT on apartment and plants", RESAMPLING, (
-        at_least("Apartment: error of BPT / of SkelBPT", 1),
-        at_least("Plants: error of BPT / of SkelBPT", 1, why=SHARED_POINTS)))
-def fig_104(run):
-    """L1 error against time, on stand-ins."""
-    for which in KINDS:
-        for name in ("Apartment", "Plants"):
-            cells = on_stand_in(run, which, name)
-            run.found(f"{name}: error of BPT / of SkelBPT", **{which: gain_at(cells["SkelBPT"]["at"][-1])})
-    run.note(STAND_IN)
 
 
 # Fig. 96: BPT and SkelBPT where draperies stand between the eye and most of the light. Which view it is the thesis does not
@@ -348,61 +188,6 @@ def fig_96(run):
     run.note("the thesis names no view: this one of ours looks along an arcade of sponza behind its drapes")
 
 
-def by_node_maps(integrator):
-    """11.6: node maps in place of shadow rays."""
-    return {**integrator, "connections": {**integrator["connections"], "node_visibility": "node_maps"}}
-
-
-SEEN_BY = {which: {"rays": METHODS[which]["SkelBPT"], "node maps": by_node_maps(METHODS[which]["SkelBPT"])}
-           for which in KINDS}
-SEEN_IN = {"Door": SCENES["door"], "Sponza": SCENES["sponza"]}
-
-
-FEW_SAVED = ("the distributions are 4 % of an iteration, so that little time is saved; on door 2 % of the decisions by maps differ as "
-             "published")
-
-
-def node_visibility_sweep(full, which="published"):
-    return resampling_sweep(full, SEEN_BY[which], SEEN_IN.values(), seeds=5 if full else 3, which=which)
-
-
-@ENTRIES.measured(
-    "noel-node-visibility", "Noel 2015, 11.6, p. 169, which measures nothing",
-    "a shadow map for each node instead of shadow rays makes the distributions of SkelBPT in less time",
-    "bdpt with connections: skeleton, node_visibility: node_maps",
-    tuple(claim(f"{name}: {text}", *figure) for name in SEEN_IN for claim, text, figure in (
-        (at_least, "time of distributions by rays / by node maps", (1,)),
-        (beside, "share of decisions by maps that differ", ()),
-        (at_least, "error by rays / by node maps, at equal time", (1, "", FEW_SAVED)))),
-    sweep=node_visibility_sweep)
-def node_visibility(run):
-    """SkelBPT with what nodes see decided by shadow rays and by node maps."""
-    for which in KINDS:
-        answers = run.answers(node_visibility_sweep(run.full, which))
-        for name, scene in SEEN_IN.items():
-            cells = {by: cell_with(answers, scene=scene["/scene"], integrator=value) for by, value in SEEN_BY[which].items()}
-            reports = {by: [run.report(c, seed) for seed in range(answers["seeds"])] for by, c in cells.items()}
-            times = {by: [r["integrator"]["distributions_cpu_seconds"] / r["counts"]["iterations"] for r in each]
-                     for by, each in reports.items()}
-            run.found(f"{name}: time of distributions by rays / by node maps",
-                      **{which: geometric_mean_of([a / b for a, b in zip(times["rays"], times["node maps"])])})
-            run.found(f"{name}: share of decisions by maps that differ", **{which: mean_of(
-                [r["integrator"]["map_decisions_wrong"] / r["integrator"]["map_decisions_checked"]
-                 for r in reports["node maps"]])})
-            run.found(f"{name}: error by rays / by node maps, at equal time",
-                      **{which: gain_at(cells["node maps"]["at"][-1])})
-            shares = {by: mean_of([share_of_distributions(r["integrator"]) for r in each]) for by, each in reports.items()}
-            run.tables.append(Table((f"{name}, {which}", "distributions, CPU ms an iteration", "of an iteration", "MAE"), [
-                (by, f"{1000 * mean_of(times[by]).value:.3g}", f"{shares[by].value:.1%}",
-                 str(error_at(cells[by]["at"][-1]))) for by in cells]))
-            for built in (a for r in reports["node maps"] for a in r["artefacts"]["built"] if a["name"] == "node_maps"):
-                run.note(f"{name}, {which}: the maps of all nodes took {built['seconds']:.3g} s once, before rendering, and "
-                         f"{built['disk_bytes'] / 1e6:.3g} MB on disk")
-    run.note("equal time is that of rendering; the maps are part of what is prepared once for a scene. A decision in 64 is "
-             f"checked by a shadow ray; MAE after {answers['cells'][0]['at'][-1]['seconds']:.3g} CPU seconds, "
-             f"{answers['seeds']} runs each")
-
-
 FIG_105 = {"published": {name: THESIS[name] for name in ("BPT", "ICBPT", "SkelBPT")},
            "ours": {"BPT": equal_work("paired"), "ICBPT": equal_work("importance_cache"),
                     "SkelBPT": equal_work("skeleton")}}
@@ -418,7 +203,7 @@ def fig_105_sweep(full, which="published"):
     "noel-fig-105", "Noel 2015, Fig. 105, p. 178",
     "after 64 iterations ICBPT has the lowest error, at about twice the time of BPT", RESAMPLING, (
         at_least("error of BPT / of ICBPT, at equal iterations", 1),
-        at_least("error of SkelBPT / of ICBPT, at equal iterations", 1), beside("time of ICBPT / of BPT", 2)),
+        at_least("error of SkelBPT / of ICBPT, at equal iterations", 1), near("time of ICBPT / of BPT", 2)),
     sweep=fig_105_sweep)
 def fig_105(run):
     """Errors and times after as many iterations of each method, each with as many eye paths, light paths and
@@ -439,28 +224,3 @@ def fig_105(run):
         run.found("error of SkelBPT / of ICBPT, at equal iterations", **{which: ratio("SkelBPT", "ICBPT", error)})
         run.found("time of ICBPT / of BPT", **{which: ratio("ICBPT", "BPT", lambda r: r["seconds"]["render_cpu"])})
         run.note(f"{which}: MAE after {sweep['job']['budget']['iterations']} iterations; means of {answers['seeds']} runs")
-
-
-@ENTRIES.measured(
-    "noel-fig-106", "Noel 2015, Fig. 106, p. 179",
-    "door after two hours: each distribution's own share; added up, no border of the node map shows", RESAMPLING)
-def fig_106(run):
-    """What each distribution of resampled connections gives to the picture of door."""
-    job = {"scene": "door/scene.glb", "camera": "corner", "resolution": [1024, 512] if run.full else [256, 128],
-           "budget": {"cpu_seconds": 7200 if run.full else 30}, "layers": ["distributions"]}
-    rows = []
-    for which in KINDS:
-        for name in ("SkelBPT", "ICBPT"):
-            run.render(f"{name}-{which}", {**job, "analysis": {"node_radius": RADII[which]}, "integrator": METHODS[which][name]})
-            folder = run.place(f"{name}-{which}")
-            run.show(f"{name}, {which}", folder)
-
-            def mean(layer, folder=folder):
-                return sum(map(sum, layers.channels(folder, layer)))
-
-            whole = mean("")
-            rows += [(name, which, layer.split(".")[1], f"{mean(layer) / whole:.1%}") for layer in layers.names(folder)
-                     if layer.startswith("distributions.")]
-    run.tables.append(Table(("method", "settings", "distribution", "of the picture's light"), rows))
-    run.note("fallback: of eye vertices whose node was not accepted. The layer of a distribution has the vertices to which it "
-             "gives the highest probability; by the max heuristic (published) no other distribution draws them")

@@ -134,7 +134,7 @@ def guided(number, page, name, configuration, minutes, *more):
             (at_least(GAIN, 1, why=WHY.get(name, "")), *more))
 
 
-@ENTRIES.measured(*guided(71, 132, "corridor", "corridor, diffuse, s = 16", 20, beside(
+@ENTRIES.measured(*guided(71, 132, "corridor", "corridor, diffuse, s = 16", 20, at_most(
     "iterations of BSDF sampling / with s = 16, at equal time", 10694 / 4513)),
     sweep=lambda full: guide_sweep(full, "corridor", [BSDF, as_published(16), OURS], 3))
 def fig_71(run):

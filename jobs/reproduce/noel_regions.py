@@ -155,9 +155,9 @@ def fig_95(run):
     note_frames(run, job)
 
 
-def guide_rays(run, guide, place, n, seed=0, resolution=GRID):
+def guide_rays(run, guide, place, n, seed=0, resolution=GRID, scene=DOOR):
     """What guide_rays says of `n` directions of a guide at the surface that a camera in `place` looks down to."""
-    job = {"scene": DOOR, "camera": {"position": place, "target": [place[0], 0, place[2]], "up": [0, 0, 1]},
+    job = {"scene": scene, "camera": {"position": place, "target": [place[0], place[1] - 1, place[2]], "up": [0, 0, 1]},
            "resolution": [2, 2], "analysis": {"resolution": resolution}, "seed": seed,
            "integrator": {"type": "inspect", "show": "guide_density", "guide": guide}}
     run.uses(job)

@@ -14,7 +14,7 @@ sys.dont_write_bytecode = True  # no cache folder beside the scenes
 import rooms
 import stand_ins
 import trials
-from hairball import hairball
+from hairball import hairball, hairball_2800k
 from images import sky
 from validate import faults
 
@@ -23,7 +23,7 @@ ROOMS = [rooms.cornell, rooms.cornell_ball, rooms.bends, rooms.ajar, rooms.atriu
 TRIALS = [trials.furnace, trials.furnace_sphere, trials.mirror, trials.glass_room, trials.slab]
 TRIALS += [trials.many_lights, trials.sides, trials.open_air]
 TRIALS += [trials.point, trials.spot, trials.directional, trials.area]
-TRIALS += [hairball]
+TRIALS += [hairball, hairball_2800k]
 TRIALS += [stand_ins.nave, stand_ins.flat, stand_ins.plants, stand_ins.plates]
 
 README_HEAD = """# Scenes

@@ -9,6 +9,7 @@ ManyViewsCounts& ManyViewsCounts::operator+=(const ManyViewsCounts& o) {
   pairs += o.pairs;
   culled += o.culled;
   splats += o.splats;
+  shared += o.shared;
   sharing += o.sharing;
   large += o.large;
   for (std::size_t i = 0; i < generations.size(); ++i) generations[i] += o.generations[i];
@@ -52,8 +53,8 @@ struct ViewRendering::Visit {
   V3f widest;
   float width;  // largest distance of views from the centre along any n'
   bool everywhere;
-  bool leaf;
-  int depth;  // number of forks above
+  bool leaf, several;  // `several`: of more than one view
+  int depth;           // number of forks above
 };
 
 ViewRendering::ViewRendering(const SceneNodes& scene, const ViewTree& views,
@@ -95,6 +96,7 @@ inline ViewRendering::Visit ViewRendering::visit(std::uint32_t view) const {
           .width = node.radius / unit,
           .everywhere = node.cosine <= -1,
           .leaf = is_leaf(view),
+          .several = node.views > 1,
           .depth = depth(view)};
   if (v.everywhere || !settings_.boxes) return v;
   for (int k = 0; k < 3; ++k) {
@@ -197,6 +199,7 @@ inline void ViewRendering::render_level(const Visit& v, int level, const NodeLis
     fill(v, rest, before, depths);
     rest.resize(before);
     counts.large += left;
+    counts.shared += v.several ? left : 0;
     counts.splats += left;
   }
 }

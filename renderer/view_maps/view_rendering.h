@@ -15,6 +15,7 @@ struct ManyViewsCounts {
   std::uint64_t culled = 0;   ///< pairs that were culled
   std::uint64_t splats = 0;   ///< rendered scene nodes
   std::uint64_t large = 0;    ///< splats of leaves that may cover several texels
+  std::uint64_t shared = 0;   ///< of `large`, those in maps of several views
   std::uint64_t sharing = 0;  ///< single views that share a splat, summed over splats
   /// Number of pairs by the number of preceding subdivisions.
   std::array<std::uint64_t, 2 * Octree::most_levels + 1> generations{};

@@ -143,6 +143,7 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
       {"view_pairs_culled", number(counts_.culled)},
       {"view_splats", number(counts_.splats)},
       {"view_splats_large", number(counts_.large)},
+      {"view_splats_large_shared", number(counts_.shared)},
       {"views_sharing_a_splat", number(counts_.sharing) / splats},
       {"view_queue_peak_pairs", number(queue_peak_)}};
   if (counts_.queue_bytes > 0) {

@@ -69,6 +69,11 @@ def value(outcomes):
              "rows": [output.row_json(row) for row, _ in rows(o)]} for o in outcomes]
 
 
+def share(found, verdict):
+    """Of verdicts(), that of one; 0 of none."""
+    return found.get(verdict, 0) / max(1, sum(found.values()))
+
+
 def verdicts(outcomes):
     """How many rows have each verdict."""
     found = {}

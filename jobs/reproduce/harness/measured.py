@@ -25,6 +25,11 @@ class Measured:
         bounds = {} if self.low is None else {"low": self.low * factor, "high": self.high * factor}
         return dataclasses.replace(self, value=self.value * factor, **bounds)
 
+    def root(self):
+        """Its square root; of a positive number."""
+        bounds = {} if self.low is None else {"low": math.sqrt(self.low), "high": math.sqrt(self.high)}
+        return dataclasses.replace(self, value=math.sqrt(self.value), **bounds)
+
     def ratio(self, other):
         """Over an independent positive number: relative half widths add up as squares do. Without both intervals, or
         where one reaches 0, there is none. None where a bound is divided by one that says nothing of the ratio."""

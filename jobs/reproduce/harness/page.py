@@ -1,8 +1,11 @@
 """docs/reproduction.md: the table of every claim, and what each entry found."""
 
+import pathlib
+import re
+
 from harness import child, code, everything, output, stored
 from harness.run import KINDS
-from harness.verdict import MISSED
+from harness.verdict import MISSED, NOT_TOLD_APART
 
 PAGE = child.ROOT / "docs/reproduction.md"
 PAPERS = (("noel", "Noel 2015"), ("nabata", "Nabata et al."), ("kol", "Kol et al. 2018"), ("popov", "Popov et al. 2015"),
@@ -57,6 +60,21 @@ def _found(outcome):
     return "\n\n".join([*parts, "\n".join(f"- {_escaped(note)}" for note in (*run.notes, *output.general_notes(run)))])
 
 
+SUMMARY = pathlib.Path(__file__).resolve().parents[1] / "summary.md"
+
+
+def _summary(outcomes):
+    """summary.md, whose {ENTRY | QUANTITY | WHICH} stand for numbers of ours, published or ours."""
+    rows = {(o.entry.name, row.claim.quantity): row for o in outcomes for row, _ in everything.rows(o)}
+
+    def number(mark):
+        name, quantity, which = map(str.strip, mark[1].split("|"))
+        found = getattr(rows[name, quantity], which)
+        return "(not measured)" if found is None else f"{found.value:.3g}"
+
+    return re.sub(r"\{([^{}]*)\}", number, SUMMARY.read_text()).strip()
+
+
 STALE = "Measured with other code than that of the tree (`./dev reproduce --stale`): "
 
 
@@ -71,16 +89,18 @@ def stale(outcomes):
 
 def text(outcomes):
     """The page of what the tree has (stored.py)."""
-    counts = ", ".join(f"{n} {verdict}" for verdict, n in everything.verdicts(outcomes).items()) or "none"
+    found = everything.verdicts(outcomes)
+    counts = ", ".join(f"{n} {verdict}" for verdict, n in found.items()) or "none"
     parts = [
         "# Reproduction",
+        _summary(outcomes),
         "Written by `./dev reproduce --all --write` and `./dev reproduce NAME --write` from the results in `reproduction`; edits "
         "are lost. [The harness](../jobs/reproduce/README.md) explains the entries.",
         "`published`: the method with the settings that the paper names, on this project's code. `ours`: with this project's "
         "defaults and changes. Intervals hold the truth with a probability of 95 %. A verdict is `reached` where the whole "
         "interval bears the claim out, `missed` where none of it does, `not told apart` between the two, and `one run` where "
         "a number has no interval; figures without a bound are information.",
-        f"Verdicts: {counts}.",
+        f"Verdicts: {counts}; {everything.share(found, NOT_TOLD_APART):.0%} not told apart.",
         _stale(outcomes),
         *_claims(outcomes),
         "## Missed claims",

@@ -10,7 +10,7 @@ NOT_MEASURED, ONE_RUN = "not measured", "one run"
 @dataclasses.dataclass(frozen=True)
 class Claim:
     """The paper's `figure` of a quantity, and which values of ours bear it out: those in [low, high]. Without bounds
-    the figure stands beside ours as information. `figure` may be absent, `unit` empty (a ratio or a count). `why`: the
+    a quantity of ours stands there as information. `figure` may be absent, `unit` empty (a ratio or a count). `why`: the
     reason found where it is missed."""
 
     quantity: str
@@ -25,12 +25,14 @@ class Claim:
         return math.isfinite(self.low) or math.isfinite(self.high)
 
     def __str__(self):
-        """The figure, as ">= 1.57", "<= 0.17 s" or "0, up to 0.01"; empty without one."""
+        """The figure, as ">= 1.57", "<= 0.17 s", "0, up to 0.01" or "4, 3.2 to 5"; empty without one."""
         if self.figure is None:
             return ""
         relation = {self.low: ">= ", self.high: "<= "}.get(self.figure, "")
         text = f"{relation}{self.figure:.6g}{self.unit and ' ' + self.unit}"
-        return text if relation or not self.judged else f"{text}, up to {self.high:.6g}"
+        if relation or not self.judged:
+            return text
+        return f"{text}, up to {self.high:.6g}" if self.low == -math.inf else f"{text}, {self.low:.3g} to {self.high:.3g}"
 
 
 def at_least(quantity, figure, unit="", why=""):
@@ -41,9 +43,17 @@ def at_most(quantity, figure, unit="", why=""):
     return Claim(quantity, figure, unit, high=figure, why=why)
 
 
-def up_to(quantity, figure, high, unit=""):
+def up_to(quantity, figure, high, unit="", why=""):
     """A figure that ours need not meet exactly: it may be as much as `high`."""
-    return Claim(quantity, figure, unit, high=high)
+    return Claim(quantity, figure, unit, high=high, why=why)
+
+
+NEAR = 1.25  # by convention: what another machine, grid or camera may change of a ratio or of a count
+
+
+def near(quantity, figure, unit="", why=""):
+    """A figure that is told without a direction: ours may be up to NEAR times larger or smaller."""
+    return Claim(quantity, figure, unit, figure / NEAR, figure * NEAR, why)
 
 
 def beside(quantity, figure=None, unit=""):

@@ -29,13 +29,13 @@ class Catalogue(unittest.TestCase):
         self.assertLessEqual({f"noel-table-{n}" for n in range(1, 7)}, names)
         self.assertLessEqual({"noel-fig-77", "nabata-table-1-2", "kol-fig-10"}, names)
 
-    def test_claims_are_told_apart_and_allow_their_own_figure(self):
+    def test_claims_are_told_apart_and_their_figures_have_bounds_that_allow_them(self):
         for entry in ENTRIES:
             quantities = [claim.quantity for claim in entry.claims]
             self.assertEqual(len(set(quantities)), len(quantities), entry.name)
             for claim in entry.claims:
                 if claim.figure is not None:
-                    self.assertTrue(claim.low <= claim.figure <= claim.high, (entry.name, claim))
+                    self.assertTrue(claim.judged and claim.low <= claim.figure <= claim.high, (entry.name, claim))
 
     def test_every_module_of_a_paper_is_in_the_catalogue(self):
         modules = {p.stem for p in (child.ROOT / "jobs/reproduce").glob("*.py")} - {"__main__", "catalogue"}

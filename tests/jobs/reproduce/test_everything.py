@@ -11,8 +11,8 @@ from catalogue import ENTRIES
 from harness import child, code, everything, identity, page, stored
 from harness.entry import Entries
 from harness.measured import Measured
-from harness.run import Table
-from harness.verdict import at_least, beside
+from harness.run import KINDS, Table
+from harness.verdict import MISSED, NOT_TOLD_APART, at_least, beside
 
 NAMES = ("noel-a", "noel-b", "kol-c")
 
@@ -24,7 +24,9 @@ class Everything(unittest.TestCase):
         self.out = pathlib.Path(folder.name)
         self.measured, self.failing, self.captions = [], {}, ()
         tree = mock.patch.multiple(stored, FOLDER=self.out / "tree")
-        written = mock.patch.multiple(page, PAGE=self.out / "tree.md")
+        summary = self.out / "summary.md"
+        summary.write_text("- a gains {noel-a | gain | ours}, d {kol-d | gain | ours}\n")
+        written = mock.patch.multiple(page, PAGE=self.out / "tree.md", SUMMARY=summary)
         for patch in (tree, written):
             patch.start()
             self.addCleanup(patch.stop)
@@ -93,7 +95,8 @@ class Everything(unittest.TestCase):
         self.assertIn("| noel-a | gain | >= 2 | 1 \\[0.9, 1.1\\] | missed | 3 \\[2.5, 3.5\\] | reached |", text)
         self.assertIn("| kol-d | gain | >= 2 |  | not built yet |  |  |", text)
         self.assertIn("- `noel-b`, gain (published): too *few*", text)
-        self.assertIn("Verdicts: 3 missed, 3 reached.", text)
+        self.assertIn("Verdicts: 3 missed, 3 reached; 0% not told apart.", text)
+        self.assertIn("# Reproduction\n\n- a gains 3, d (not measured)\n", text)
         self.assertIn("- the file build/a\\_b", text)
         self.assertNotIn(str(child.ROOT), text)
         headings = [line for line in text.splitlines() if line.startswith("#")]
@@ -125,6 +128,7 @@ class Everything(unittest.TestCase):
         page.write(self.entries, [self.all()[0].run])
         others = Entries()
         others.measured("noel-a", "a paper", "what it claims", "path", (at_least("gain", 4), at_least("new", 1)))(print)
+        others.planned("kol-d", "a paper", "later", "path", (at_least("gain", 2),))
         page.write(others, [])
         text = page.PAGE.read_text()
         self.assertIn("| noel-a | gain | >= 4 | 1 \\[0.9, 1.1\\] | missed | 3 \\[2.5, 3.5\\] | missed |", text)
@@ -168,6 +172,16 @@ class Tree(unittest.TestCase):
             return [line for line in text.splitlines() if not line.startswith(page.STALE)]
         self.assertEqual(but_stale(page.PAGE.read_text()), but_stale(page.text(list(stored.outcomes(ENTRIES)))),
                          "./dev reproduce --stale --write writes it anew")
+
+    def test_what_is_missed_in_the_tree_has_a_reason(self):
+        self.assertEqual([(o.entry.name, row.claim.quantity) for o in stored.outcomes(ENTRIES) if o.run for row in o.run.rows
+                          if MISSED in map(row.verdict, KINDS) and not row.claim.why], [])
+
+    def test_not_more_than_three_in_ten_are_not_told_apart(self):
+        self.assertLessEqual(everything.share(everything.verdicts(list(stored.outcomes(ENTRIES))), NOT_TOLD_APART), 0.3)
+
+    def test_the_summary_is_ten_lines(self):
+        self.assertLessEqual(len(page.SUMMARY.read_text().splitlines()), 10)
 
     def test_every_result_in_the_tree_is_of_an_entry_and_tells_its_commit(self):
         names = {entry.name for entry in ENTRIES}

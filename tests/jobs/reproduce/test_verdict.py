@@ -6,7 +6,7 @@ import unittest
 
 from harness.measured import (CONFIDENCE, Measured, error_at, exact, gain_at, geometric_mean_of, mean_of, median_of,
                               speed_up_to, time_to)
-from harness.verdict import Claim, at_least, at_most, beside, up_to, verdict
+from harness.verdict import Claim, at_least, at_most, beside, near, up_to, verdict
 
 
 class Verdicts(unittest.TestCase):
@@ -31,11 +31,13 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(verdict(claim, None), "not measured")
         self.assertEqual(verdict(beside("seconds", 3677.44, "s"), Measured(100, 90, 110, 3)), "")
         self.assertEqual(verdict(claim, exact(2)), "reached")
+        for value, expected in ((3.1, "missed"), (3.3, "reached"), (4.9, "reached"), (5.1, "missed")):
+            self.assertEqual(verdict(near("ratio", 4), exact(value)), expected)
 
     def test_figures_are_told_with_their_direction(self):
         self.assertEqual([str(c) for c in (at_least("a", 1.57), at_most("a", 0.17, "s"), up_to("a", 0, 0.01),
-                                           beside("a", 3677.44, "s"), beside("a"))],
-                         [">= 1.57", "<= 0.17 s", "0, up to 0.01", "3677.44 s", ""])
+                                           near("a", 4), beside("a", 3677.44, "s"), beside("a"))],
+                         [">= 1.57", "<= 0.17 s", "0, up to 0.01", "4, 3.2 to 5", "3677.44 s", ""])
 
 
 class Medians(unittest.TestCase):
