@@ -33,17 +33,20 @@ struct EnumTable<NodeMapping> {
 };
 
 /// The radius of a node of the skeleton, a corner of the lattice: that of its maximal ball.
-enum class NodeRadius { corner, voxel };
+enum class NodeRadius { corner, voxel, chessboard };
 
 template <>
 struct EnumTable<NodeRadius> {
-  static constexpr std::array<EnumValue<NodeRadius>, 2> values{{
+  static constexpr std::array<EnumValue<NodeRadius>, 3> values{{
       {NodeRadius::corner, "corner",
        "from the node itself to the nearest closed voxel of the scene: 0 where a passage is one "
        "voxel wide"},
       {NodeRadius::voxel, "voxel",
        "the largest distance from a voxel at the node to the scene, between centres of voxels "
        "(thesis 6.2.2, 6.3): at least 1"},
+      {NodeRadius::chessboard, "chessboard",
+       "the same by the chessboard distance, as in the author's code; the filter then removes the "
+       "nodes nearer than the radius, connected or not"},
   }};
 };
 
@@ -75,7 +78,7 @@ void describe(V& v, AnalysisSettings& s) {
   v("node_radius", s.node_radius,
     {.doc = "the radius of a skeleton node, used to filter and simplify the skeleton and to make "
             "visibility clusters and gates",
-     .published = "\"voxel\""});
+     .published = "\"chessboard\""});
 }
 
 }  // namespace lacuna

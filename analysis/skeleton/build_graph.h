@@ -18,7 +18,8 @@ SkeletonGraph build_graph(const CubicalComplex& skeleton, const Grid3<std::uint1
                           const ThreadPool& pool);
 
 /// The same graph with the radii of squared_voxel_radius(), which are at least 1:
-/// NodeRadius::voxel. `squares` is squared_distance() of the domain.
+/// NodeRadius::voxel and chessboard. `squares` is squared_distance() of the domain, or the squares
+/// of chebyshev_distance().
 SkeletonGraph build_graph_by_voxels(const CubicalComplex& skeleton,
                                     const Grid3<std::uint32_t>& squares, const ThreadPool& pool);
 

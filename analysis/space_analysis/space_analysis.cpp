@@ -87,7 +87,11 @@ ArtefactKey SpaceAnalysis::skeleton_key() {
                                enum_name(input_.settings.node_radius)));
 }
 ArtefactKey SpaceAnalysis::filtered_key() {
-  return ArtefactKey(filtered_.type, filtered_version).from(skeleton_key());
+  ArtefactKey key(filtered_.type, filtered_version);
+  key.from(skeleton_key());
+  // Rounding depends on the scene's units.
+  if (input_.settings.node_radius == NodeRadius::chessboard) key.from(voxels_key());
+  return key;
 }
 ArtefactKey SpaceAnalysis::simplified_key() {
   return ArtefactKey(simplified_.type, simplified_version).from(skeleton_key());
@@ -149,14 +153,24 @@ const SkeletonGraph& SpaceAnalysis::skeleton() {
     const CubicalComplex thin = thin_space();
     if (input_.settings.node_radius == NodeRadius::corner)
       return build_graph(thin, distance(), pool_);
+    if (input_.settings.node_radius == NodeRadius::chessboard) {
+      const auto steps = chebyshev_distance(domain().voxels, pool_, input_.byte_limit());
+      Grid3<std::uint32_t> squares(steps.size());
+      for (std::size_t i = 0; i < steps.count(); ++i)
+        squares[i] = std::uint32_t{steps[i]} * steps[i];
+      return build_graph_by_voxels(thin, squares, pool_);
+    }
     const auto squares = squared_distance(domain().voxels, pool_, input_.byte_limit());
     return build_graph_by_voxels(thin, squares, pool_);
   });
 }
 
 const FilteredSkeleton& SpaceAnalysis::filtered() {
-  return get<FilteredSkeleton>(filtered_, filtered_key(),
-                               [this] { return filter_skeleton(skeleton()); });
+  return get<FilteredSkeleton>(filtered_, filtered_key(), [this] {
+    return input_.settings.node_radius == NodeRadius::chessboard
+               ? filter_without_access(skeleton(), voxels().transform)
+               : filter_skeleton(skeleton());
+  });
 }
 
 Grid3<std::uint32_t> SpaceAnalysis::make_map(const SkeletonGraph& graph) {

@@ -131,6 +131,17 @@ TEST(Filter, TakesNothingOneNodeAndLongLines) {
   EXPECT_EQ(filter_skeleton(straight_line(100'000, 4)).graph.nodes(), 20'000u);
 }
 
+// Where all numbers are exact, a distance equal to the radius is not less: 0 takes 1 to 3.
+TEST(Filter, WithoutAccessTakesWhatIsNearerThanTheRadius) {
+  const FilteredSkeleton line = filter_without_access(straight_line(1000, 4), {});
+  expect_sound_filtering(straight_line(1000, 4), line, "line");
+  EXPECT_EQ(line.graph.nodes(), 250u);
+  const SkeletonGraph apart = make_graph({{0, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {3, 1, 1}, {{1, 2}});
+  EXPECT_EQ(filter_without_access(apart, {}).source, (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(filter_without_access(apart, {}).graph.edges(), 1u);
+  EXPECT_EQ(filter_skeleton(apart).source, (std::vector<std::uint32_t>{0, 1}));
+}
+
 TEST(Filter, MovesWithTheGrid) {
   for (const auto& [name, domain] : domains()) {
     const V3i shift(1, 2, 8);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "analysis/space/memory_limit.h"
@@ -147,6 +148,14 @@ TEST_F(SpaceAnalysisTest, TellsSettingsApartInTheCache) {
   ASSERT_EQ(voxel.size(), corner.size());
   EXPECT_NE(voxel, corner);
   for (std::size_t n = 0; n < voxel.size(); ++n) EXPECT_GE(voxel[n], std::max(1.0F, corner[n]));
+  const auto [third, chessboard] =
+      built_with([](AnalysisSettings& s) { s.node_radius = NodeRadius::chessboard; });
+  EXPECT_EQ(third, again);
+  ASSERT_EQ(chessboard.size(), voxel.size());
+  for (std::size_t n = 0; n < voxel.size(); ++n) {  // D_infinity <= D_2
+    EXPECT_LE(chessboard[n], voxel[n]);
+    EXPECT_EQ(chessboard[n], std::floor(chessboard[n]));
+  }
   const auto [wide, same] = built_with([](AnalysisSettings& s) { s.cluster_alpha = 1; });
   EXPECT_EQ(wide, (Types{"visibility_clusters", "visibility_gates"}));
   EXPECT_EQ(same, corner);
