@@ -46,7 +46,8 @@ class Rng {
     eye_records = 12,
     arriving_power = 13,
     cache_points = 14,
-    passes = 15
+    passes = 15,
+    face_paths = 16
   };
 
   /// `path` < 2^56; `iteration` < 2^32.

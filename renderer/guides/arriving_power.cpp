@@ -1,5 +1,7 @@
 #include "renderer/guides/arriving_power.h"
 
+#include <algorithm>
+
 namespace lacuna {
 
 namespace {
@@ -56,6 +58,27 @@ std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& look
     if (!le) return std::nullopt;
     return EmittedRay{le->ray, double(luminance(le->throughput))};
   });
+}
+
+std::uint32_t brightest_part(const Scene& scene, const SurfaceLookup& lookup, std::size_t count,
+                             int rays, const ThreadPool& pool) {
+  const EmitterSet& lights = scene.emitters();
+  std::vector<double> power(count, 0.0);
+  bool any = false;
+  for (int i = 0; i < rays && !lights.empty(); ++i) {
+    Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::arriving_power);
+    const EmitterPoint e = lights.sample(lights.choose(rng));
+    const std::optional<LightLeSample> le = lights.sample_Le(e, rng);
+    if (!le || e.infinite()) continue;
+    const V3d w(le->ray.d), n = e.kind == EmitterPoint::Kind::area ? V3d(e.ng) : w;
+    const std::uint32_t part = lookup.node(V3d(e.x), n, w);
+    const auto emitted = double(luminance(le->throughput));
+    if (part == no_node || !std::isfinite(emitted)) continue;
+    power[part] += emitted;
+    any = true;
+  }
+  if (!any) power = arriving_power(scene, lookup, count, rays, pool);
+  return static_cast<std::uint32_t>(std::max_element(power.begin(), power.end()) - power.begin());
 }
 
 std::vector<double> arriving_importance(const Scene& scene, const Camera& camera,

@@ -16,6 +16,12 @@ namespace lacuna {
 std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& lookup,
                                    std::size_t count, int rays, const ThreadPool& pool);
 
+/// The part of the empty space from which the emitters emit the most power; emitters at infinity
+/// have none. Where all are at infinity: the part in which the most power arrives. Parameters as of
+/// arriving_power().
+std::uint32_t brightest_part(const Scene& scene, const SurfaceLookup& lookup, std::size_t count,
+                             int rays, const ThreadPool& pool);
+
 /// The fraction of the picture in which each part's surfaces are directly visible, without mirrors:
 /// the power that arrives from an eye that emits importance. Otherwise as arriving_power().
 std::vector<double> arriving_importance(const Scene& scene, const Camera& camera,

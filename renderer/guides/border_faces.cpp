@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "renderer/core/direction_around.h"
+#include "renderer/guides/face_paths.h"
 #include "renderer/guides/named_region.h"
 
 namespace lacuna {
@@ -93,6 +95,31 @@ void BorderFaceLight::add(std::uint32_t region, const VoxelFace& face, double li
   if (std::isfinite(light)) light_[first(region) + index(region, face)] += light;
 }
 
+/// The irradiance of a face is pi times the mean of the radiance from directions sampled by their
+/// cosine with its normal; pi, like the area, is the same for all.
+Counters BorderFaceLight::begin(const IterationContext& context, int edges,
+                                const GridTransform& transform) {
+  if (learns_from_eye_paths() || begun_ == context.iteration + 1) return {};
+  const auto ray = [&](std::size_t i, Rng& rng) -> Ray {
+    const auto group = std::upper_bound(borders_.first.begin(), borders_.first.end(), i);
+    const VoxelFace face{borders_.voxels[i],
+                         static_cast<std::uint8_t>((group - borders_.first.begin() - 1) % 6)};
+    const V2f at = rng.next2(), u = rng.next2();
+    const V3d x = face.point(label_->voxel(face.voxel), double(at.x), double(at.y));
+    const double versine = 1 - std::sqrt(1 - double(u.x));
+    return {V3f(transform.to_world(x)), direction_around(V3f(face.normal()), versine, u.y)};
+  };
+  std::vector<float> found(light_.size(), 0.0F);
+  const Counters counters = arriving_light(context, std::max(1, edges - 1), ray, found);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (std::isfinite(found[i])) light_[i] += double(found[i]);
+  }
+  context.pool.for_each(static_cast<int>(tables_.size()),
+                        [&](int r) { make_table(static_cast<std::uint32_t>(r)); });
+  begun_ = context.iteration + 1;
+  return counters;
+}
+
 void BorderFaceLight::make_table(std::uint32_t region) {
   tables_[region] = AliasTable(std::span(light_).subspan(first(region), borders_.faces(region)));
   if (has_thresholds()) find_lit_portal_faces(region);
@@ -114,12 +141,18 @@ void BorderFaceLight::find_lit_portal_faces(std::uint32_t region) {
   });
 }
 
+void BorderFaceLight::save(ByteWriter& out) const {
+  out.put(light_);
+  if (!learns_from_eye_paths()) out.put(begun_);
+}
+
 void BorderFaceLight::load(ByteReader& in) {
   std::vector<double> light = in.get_vector<double>();
   if (light.size() != light_.size()) {
     throw std::runtime_error("saved face irradiance belongs to other borders");
   }
   light_ = std::move(light);
+  if (!learns_from_eye_paths()) begun_ = in.get<std::uint64_t>();
   for (std::uint32_t r = 0; r < tables_.size(); ++r) make_table(r);
 }
 

@@ -22,6 +22,9 @@ namespace lacuna {
 /// with Q_n the sum of P_r over the unsuitable faces from r to n. Each density therefore takes a
 /// loop over all lit portal faces of the region.
 ///
+/// With FacePaths::face, light does not come from eye paths: one path from each face, away from the
+/// region, estimates it before each iteration, as in the thesis.
+///
 /// If the settings name a region (`through`), all regions sample its border (FIS3, FIS4).
 class BorderFaceLight {
  public:
@@ -32,7 +35,7 @@ class BorderFaceLight {
 
   explicit BorderFaceLight(const FaceIrradianceGuideSettings& settings) : settings_(settings) {}
   void prepare(const PrepareContext& context, const SurfaceLookup&);
-  void save(ByteWriter& out) const { out.put(light_); }
+  void save(ByteWriter& out) const;
   /// Throws std::runtime_error if the state belongs to other borders.
   void load(ByteReader& in);
   std::vector<std::pair<std::string, double>> statistics() const;
@@ -56,6 +59,9 @@ class BorderFaceLight {
 
   /// Adds `light` >= 0 that arrived through a face of the region's border.
   void add(std::uint32_t region, const VoxelFace& face, double light);
+  bool learns_from_eye_paths() const { return settings_.learn_from == FacePaths::eye; }
+  /// GuidingDistribution::begin(). `transform`: of the voxels.
+  Counters begin(const IterationContext& context, int edges, const GridTransform& transform);
   /// Call after the last add() of the region.
   void update(std::uint32_t region) { make_table(region); }
 
@@ -99,6 +105,7 @@ class BorderFaceLight {
   const Grid3<std::uint32_t>* label_ = nullptr;
   Borders borders_;
   std::vector<double> light_;  // of each face of each region
+  std::uint64_t begun_ = 0;    // 1 + the last iteration that begin() has added to light_
   std::vector<AliasTable> tables_;
   std::vector<VoxelBox> boxes_;
   std::vector<std::vector<LitPortalFace>> lit_portal_faces_;  // of each region, sorted by `beyond`

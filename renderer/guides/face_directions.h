@@ -105,10 +105,18 @@ class FaceDirections final : public GuidingDistribution {
   AutoNumber probability() const override {
     return settings_.guide_only ? AutoNumber{1} : settings_.probability;
   }
-  bool learns() const override { return Faces::learns; }
+  Counters begin(const IterationContext& context, int edges) override {
+    if constexpr (Faces::learns) return faces_.begin(context, edges, transform_);
+    return {};
+  }
+  bool learns() const override {
+    if constexpr (Faces::learns) return faces_.learns_from_eye_paths();
+    return false;
+  }
   std::vector<std::uint32_t> update(const TrainingSamples& samples,
                                     const ThreadPool& pool) override {
     if constexpr (Faces::learns) {
+      if (!learns()) return {};
       pool.for_each(static_cast<int>(regions_), [&](int r) {
         const auto region = static_cast<std::uint32_t>(r);
         for (const TrainingSample& s : samples.of(region)) add(region, s);

@@ -22,7 +22,13 @@ std::unique_ptr<GuidingDistribution> make_guiding_distribution(const LightGuideS
 }
 
 Guide make_guide(const GuideSettings& eye, const LightGuideSettings& light) {
-  return Guide(make_guiding_distribution(eye), make_guiding_distribution(light));
+  const GuidedRoulette roulette = std::visit(
+      [](const auto& s) {
+        if constexpr (requires { s.roulette; }) return s.roulette;
+        return GuidedRoulette::window;
+      },
+      eye);
+  return Guide(make_guiding_distribution(eye), make_guiding_distribution(light), roulette);
 }
 
 }  // namespace lacuna

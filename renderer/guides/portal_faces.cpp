@@ -128,8 +128,13 @@ void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lo
 void PortalFaces::find_all_exits(const PrepareContext& context, const SurfaceLookup& lookup) {
   const RegionLabels& labels = context.space.regions();
   const PortalGrid grid{*portals_, labels.label, context.space.voxels().transform};
-  const std::vector<double> power = arriving_power(context.scene, lookup, labels.regions.size(),
-                                                   settings_.light_rays, context.pool);
+  const std::size_t regions = labels.regions.size();
+  std::vector<double> power(regions, 0.0);
+  if (settings_.paths == PortalPaths::lit_regions) {
+    power = arriving_power(context.scene, lookup, regions, settings_.light_rays, context.pool);
+  } else if (regions > 0) {  // with one destination, all paths lead there, and have mass 1
+    power[brightest_part(context.scene, lookup, regions, settings_.light_rays, context.pool)] = 1;
+  }
   const std::vector<V3d> centres = centres_of(labels);
   exits_.resize(labels.regions.size());
   context.pool.for_each(static_cast<int>(exits_.size()), [&](int i) {

@@ -12,8 +12,9 @@ namespace lacuna {
 /// arrives. One portal on each path is sampled with weight f / d^2, with f the power that arrives
 /// in the region at its end and d its length, as in skeleton guiding (Noel 2015, eq. 164); the
 /// faces of a portal have equal probability (10.4.1, for one light). Power that arrives in the
-/// region itself lowers the region's mass(). If the settings name a portal (`through`), all regions
-/// use only that portal, with mass() 1 (SIS3 and SIS4).
+/// region itself lowers the region's mass(). With PortalPaths::light_region, one path of each
+/// region leads to the light's region, and has mass() 1. If the settings name a portal (`through`),
+/// all regions use only that portal, with mass() 1 (SIS3 and SIS4).
 class PortalFaces {
  public:
   static constexpr bool learns = false;

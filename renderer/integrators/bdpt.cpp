@@ -22,7 +22,8 @@ struct Merging {
 };
 
 /// connections: paired. The eye path of pixel j is connected to light path j; for s = 1 a new point
-/// on an emitter is sampled at each vertex. With merging: vertex connection and merging (Georgiev
+/// on an emitter is sampled at each vertex, or that of the light path is taken (DirectPoint). With
+/// merging: vertex connection and merging (Georgiev
 /// et al. 2012). Then all light paths are traced before the eye paths, for their photons. The
 /// vertices for connections are restored from the photons, which takes less memory than storing
 /// whole vertices.
@@ -61,11 +62,11 @@ class PairedBdpt final : public Bdpt {
     const bool lit = !context.scene.emitters().empty();
     SampleCounts counts;
     if (lit && merging_.connect) counts = {1, 1, 1, pixels};
-    Counters sum;
+    Counters sum = guide_.begin(context, settings_.max_depth);
     if (lit && merging_.merge) {
       const double radius = merge_radius(merging_.radius, context);
       counts.merge = pixels * std::numbers::pi * radius * radius;
-      sum = photon_pass(context, counts, radius, image);
+      sum += photon_pass(context, counts, radius, image);
     }
     Passes passes(context.pool);
     passes.begin("eye paths", seconds_.eye);
@@ -77,9 +78,10 @@ class PairedBdpt final : public Bdpt {
   /// How next event estimation (s = 1) selects emitters. With merging by power, because a Photon
   /// does not store Vertex::next_event_ratio.
   EmitterChoice emitters() const {
-    const auto* paired = std::get_if<PairedSettings>(&settings_.connections);
-    return merging_.merge || paired == nullptr ? EmitterChoice::power : paired->emitters;
+    return merging_.merge || takes_light_path() ? EmitterChoice::power : paired().emitters;
   }
+  const PairedSettings& paired() const { return std::get<PairedSettings>(settings_.connections); }
+  bool takes_light_path() const { return paired().direct == DirectPoint::light_path; }
   LightPathSetting light_setting(const IterationContext& context,
                                  const SampleCounts& counts) const {
     LightPathSetting setting = Base::light_setting(context, counts);
@@ -169,8 +171,8 @@ class PairedBdpt final : public Bdpt {
 
   void walk_eye(const Base::TilePass& pass, Walk& walk, Pairs& pairs) const {
     const NextEvent next_event(pass.context.scene, emitters());
-    EmitterSelection selection(next_event, pairs.eye.counts.nee > 0, settings_.max_depth,
-                               pairs.eye);
+    EmitterSelection selection(next_event, pairs.eye.counts.nee > 0 && !takes_light_path(),
+                               settings_.max_depth, pairs.eye);
     walk.trace_paths(
         pairs.eye.states,
         [&](std::size_t i, int depth) {
@@ -182,7 +184,7 @@ class PairedBdpt final : public Bdpt {
         selection);
   }
 
-  /// Connects vertex `depth` of eye path `i` to a new point on an emitter and to its light path,
+  /// Connects vertex `depth` of eye path `i` to a point on an emitter and to its light path,
   /// and marks it for look_up().
   void connect_vertex(const NextEvent& next_event, const EmitterSelection& selection, Pairs& pairs,
                       std::size_t i, int depth) const {
@@ -193,10 +195,12 @@ class PairedBdpt final : public Bdpt {
     if (counts.merge > 0) pairs.look_ups.push_back({static_cast<std::uint32_t>(i), depth});
     if (counts.nee == 0) return;
     const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
-    const EmitterPoint e = next_event.sample(v, selection.of(i), pairs.eye.states[i].rng);
+    const std::size_t path = pairs.eye.origin[i];
+    const EmitterPoint e = takes_light_path()
+                               ? pairs.light.emitter(path)
+                               : next_event.sample(v, selection.of(i), pairs.eye.states[i].rng);
     const BdptContribution known{.path = static_cast<std::uint8_t>(i)};
     Base::queue_connection(eye, EmitterEndpoint{e, guide_}, 1, known, pairs.eye);
-    const std::size_t path = pairs.eye.origin[i];
     pairs.light.for_each_vertex(path, [&](std::size_t j, int index) {
       if (index >= longest || !pairs.light.connectible(j, index)) return;
       Base::queue_connection(eye, pairs.light.end(j, index), 1, known, pairs.eye);
@@ -301,7 +305,8 @@ class ResampledBdpt final : public Bdpt {
     passes.begin("light paths", seconds_.light);
     LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1), counts);
     const LightPathSetting setting = Base::light_setting(context, counts);
-    Counters counters = light_pass(
+    Counters counters = guide_.begin(context, settings_.max_depth);
+    counters += light_pass(
         {context, setting, lit ? paths : 0, image}, guide_,
         [&](std::size_t path, const LightBatch& batch, std::size_t place) {
           if (path < resampled) lights.keep(path, batch, place);

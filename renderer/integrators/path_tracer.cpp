@@ -45,7 +45,8 @@ class PathTracer::TilePass {
         context_(context),
         image_(image),
         counters_(counters),
-        direct_(context.scene, tracer.guide_, settings_.next_event_estimation, settings_.emitters),
+        direct_(context.scene, tracer.guide_, settings_.next_event_estimation, settings_.emitters,
+                settings_.heuristic),
         batch_(settings_.max_depth),
         selection_(direct_.next_event(), direct_.active(), settings_.max_depth, batch_),
         reuse_(batch_, tracer.guide_, settings_.max_depth > 2 ? settings_.reuse : 1),
@@ -152,12 +153,15 @@ class PathTracer::TilePass {
 };
 
 Counters PathTracer::iterate(const IterationContext& context, Image& image) {
-  if (guide_.first_pass().end == LearningPass::parts) return render_passes(context, image);
+  Counters counters = guide_.begin(context, settings_.max_depth);
+  if (guide_.first_pass().end == LearningPass::parts) {
+    return counters += render_passes(context, image);
+  }
   // The first iteration updates the guide between its passes: a stopped one must restore it.
   ByteWriter before;
   guide_.save(before);
   try {
-    return render_passes(context, image);
+    return counters += render_passes(context, image);
   } catch (...) {
     ByteReader in(before.bytes());
     guide_.load(in);

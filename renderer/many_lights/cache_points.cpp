@@ -184,12 +184,17 @@ CachePoints::Neighbours CachePoints::nearest(const ShadingPoint& at) const {
   return neighbours;
 }
 
-float CachePoints::deviation(const ShadingPoint& at, const Neighbours& neighbours) const {
+float CachePoints::deviation(VarianceOf of, const ShadingPoint& at,
+                             const Neighbours& neighbours) const {
+  if (of == VarianceOf::picture) return static_cast<float>(std::sqrt(picture_variance_));
   double variance = 0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(neighbours.n); ++j) {
-    variance += double(neighbours.weight[j]) * variances_[neighbours.index[j]];
+    const std::uint32_t i = neighbours.index[j];
+    const double scale = of == VarianceOf::cache_points ? scales_[i] : 1;
+    variance += double(neighbours.weight[j]) * variances_[i] * scale * scale;
   }
-  return static_cast<float>(std::sqrt(variance) * double(at.scale));
+  return static_cast<float>(std::sqrt(variance) *
+                            (of == VarianceOf::cache_points ? 1 : double(at.scale)));
 }
 
 std::uint64_t CachePoints::expected(const Neighbours& neighbours, std::size_t block,

@@ -56,11 +56,10 @@ class CachePoints {
   };
   Neighbours nearest(const ShadingPoint& at) const;
 
-  /// Standard deviation of the lights' contributions (luminance, with visibility) to `at`; 0 if
-  /// there is no cache point.
-  float deviation(const ShadingPoint& at, const Neighbours& neighbours) const;
-  /// The root mean square of the deviation over the picture.
-  float deviation() const { return static_cast<float>(std::sqrt(picture_variance_)); }
+  /// Standard deviation of the lights' contributions (luminance, with visibility) to `at`: `of` the
+  /// point itself, of its cache points, or the root mean square over the picture. 0 if there is no
+  /// cache point. `neighbours`: of `at`; not used for the picture.
+  float deviation(VarianceOf of, const ShadingPoint& at, const Neighbours& neighbours) const;
   /// q: the weighted mean visibility of each light of `block` over the nearest points at which it
   /// was tested: with CacheLights::lit, those at which the light has a contribution. Returns a mask
   /// of the lights tested at some point; q of the others is 0. Requires Keep::visibilities.

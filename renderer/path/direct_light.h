@@ -5,17 +5,19 @@
 
 namespace lacuna {
 
-/// The two strategies of unidirectional path tracing, combined by the power heuristic: the eye path
-/// hits an emitter (s = 0), or a point on an emitter is sampled at one of its vertices (s = 1, next
-/// event estimation).
+/// The two strategies of unidirectional path tracing, combined by `heuristic`: the eye path hits an
+/// emitter (s = 0), or a point on an emitter is sampled at one of its vertices (s = 1, next event
+/// estimation).
 class DirectLight {
  public:
   /// Without `next_event`, or without emitters, no points on emitters are sampled and hits have
   /// weight 1.
-  DirectLight(const Scene& scene, const Guide& guide, bool next_event, EmitterChoice emitters)
+  DirectLight(const Scene& scene, const Guide& guide, bool next_event, EmitterChoice emitters,
+              Heuristic heuristic = Heuristic::power)
       : scene_(scene),
         guide_(guide),
         next_event_(scene, emitters),
+        heuristic_(heuristic),
         counts_{.hit = 1, .nee = next_event && !scene.emitters().empty() ? 1.0 : 0.0} {}
 
   /// Whether points on emitters are sampled.
@@ -29,7 +31,7 @@ class DirectLight {
     std::optional<EmitterPoint> e = emitter_at(scene_, v);
     if (!e) return Rgb(0, 0, 0);
     if (active()) next_event_.set_ratio(*e, v, before, depth);
-    const double w = power_of_two(hit_weight(v, depth, *e, counts_, guide_));
+    const double w = of_two(hit_weight(v, depth, *e, counts_, guide_));
     return v.throughput * e->emission * static_cast<float>(w);
   }
 
@@ -43,15 +45,21 @@ class DirectLight {
     const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     const EmitterEndpoint light{e, guide_};
     if (const Connection c = connect(eye, light)) {
-      const double w = power_of_two(weight(eye, light, c, counts_));
+      const double w = of_two(weight(eye, light, c, counts_));
       add(shadow_ray(eye, light, c), c.contribution * static_cast<float>(w), c.w);
     }
   }
 
  private:
+  /// The weight of one of the two techniques, from that by the balance heuristic.
+  double of_two(double balance) const {
+    return heuristic_ == Heuristic::power ? power_of_two(balance) : balance;
+  }
+
   const Scene& scene_;
   const Guide& guide_;
   NextEvent next_event_;
+  Heuristic heuristic_;
   SampleCounts counts_;
 };
 

@@ -33,8 +33,9 @@ bool choose(std::uint64_t& u, double c) {
 
 }  // namespace
 
-Guide::Guide(std::unique_ptr<GuidingDistribution> eye, std::unique_ptr<GuidingDistribution> light)
-    : eye_(std::move(eye)), light_(std::move(light)) {
+Guide::Guide(std::unique_ptr<GuidingDistribution> eye, std::unique_ptr<GuidingDistribution> light,
+             GuidedRoulette roulette)
+    : eye_(std::move(eye)), light_(std::move(light)), windows_(roulette == GuidedRoulette::window) {
   if (eye_) fixed_probability_ = eye_->probability().value;
   if (light_) fixed_light_probability_ = light_->probability().value;
 }
@@ -102,7 +103,7 @@ void Guide::update(std::span<const TrainingSamples::Part> parts, const LearningP
     share_ = std::ceil(std::max(1.0, share(context, edges) * all / most_samples));
   }
   if (samples.size() == 0) return;
-  if (reflected_.learns()) reflected_.update(samples);
+  if (windows_ && reflected_.learns()) reflected_.update(samples);
   if (!fixed_probability_) probability_.update(samples, context.pool);
   const std::vector<std::uint32_t> origins = eye_->update(samples, context.pool);
   if (!fixed_probability_) probability_.divide(origins);

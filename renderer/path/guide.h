@@ -6,6 +6,7 @@
 #include "renderer/path/guiding_distribution.h"
 #include "renderer/path/learned_probability.h"
 #include "renderer/path/reflected_radiance.h"
+#include "renderer/settings/departures.h"
 
 namespace lacuna {
 
@@ -25,9 +26,10 @@ namespace lacuna {
 /// area and from those that emit on both sides.
 class Guide {
  public:
-  /// Either may be null: those paths follow the BSDF.
+  /// Either distribution may be null: those paths follow the BSDF. `roulette`: of eye paths.
   explicit Guide(std::unique_ptr<GuidingDistribution> eye = nullptr,
-                 std::unique_ptr<GuidingDistribution> light = nullptr);
+                 std::unique_ptr<GuidingDistribution> light = nullptr,
+                 GuidedRoulette roulette = GuidedRoulette::window);
 
   bool needs_space() const {
     return (eye_ && eye_->needs_space()) || (light_ && light_->needs_space());
@@ -41,10 +43,18 @@ class Guide {
 
   /// Whether paths of this transport have a distribution.
   bool guides(Transport transport) const { return of(transport) != nullptr; }
+  /// Whether such paths are kept in a window of their expected contribution (Roulette).
+  bool windows(Transport transport) const {
+    return guides(transport) && (transport == Transport::importance || windows_);
+  }
 
   /// Whether update() needs training samples of the coming iteration.
   bool learns() const {
-    return eye_ && (eye_->learns() || !fixed_probability_ || reflected_.learns());
+    return eye_ && (eye_->learns() || !fixed_probability_ || (windows_ && reflected_.learns()));
+  }
+  /// Call before each iteration: GuidingDistribution::begin().
+  Counters begin(const IterationContext& context, int edges) {
+    return eye_ ? eye_->begin(context, edges) : Counters{};
   }
   /// Whether the paths of the block of 8 x 8 pixels around `pixel` record training samples in this
   /// iteration. False if the guide does not learn. In a large picture only a fraction of the blocks
@@ -123,7 +133,8 @@ class Guide {
   std::unique_ptr<GuidingDistribution> eye_, light_;
   std::optional<double> fixed_probability_, fixed_light_probability_;
   LearnedProbability probability_;  // of eye_, unless it is fixed
-  ReflectedRadiance reflected_;
+  bool windows_;                    // of eye paths
+  ReflectedRadiance reflected_;     // for the window
   double share_ = 0;  // one block of `share_` records samples; 0: no iteration has ended yet
   Lobes white_{SurfaceParams{.f0 = Rgb(0, 0, 0), .f90 = 0}};
 };

@@ -8,6 +8,7 @@
 #include "base/settings/auto_number.h"
 #include "base/storage/bytes.h"
 #include "renderer/path/contexts.h"
+#include "renderer/path/counters.h"
 #include "renderer/path/training_samples.h"
 #include "renderer/path/vertex.h"
 
@@ -57,6 +58,10 @@ class GuidingDistribution {
   /// How Guide finds the probability of sampling the distribution: learned for each cell, or one
   /// number for all.
   virtual AutoNumber probability() const = 0;
+  /// Called before each iteration, whose paths have at most `edges` edges, for what is learned by
+  /// paths other than those of the eye. An iteration that is repeated after IterationStopped, which
+  /// it may throw, must find the same state.
+  virtual Counters begin(const IterationContext&, int /*edges*/) { return {}; }
   /// Whether update() needs to be called after the coming iteration.
   virtual bool learns() const { return false; }
   /// Learns from the samples of a pass. Returns, for each cell that was added, the cell that it was

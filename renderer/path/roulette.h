@@ -13,7 +13,7 @@ namespace lacuna {
 /// splitting (Vorba and Krivanek 2016) keeps the luminance that it is expected to add to the
 /// picture near the value at its first connectible vertex. Guiding multiplies the weight by a
 /// factor at each vertex; without a window the variance of the product grows exponentially with the
-/// depth.
+/// depth. GuidedRoulette::throughput undoes the window.
 class Roulette {
  public:
   struct Limits {
@@ -23,7 +23,7 @@ class Roulette {
   };
 
   Roulette(const Guide& guide, const Limits& limits)
-      : guide_(guide), limits_(limits), windows_(guide.guides(limits.transport)) {}
+      : guide_(guide), limits_(limits), windows_(guide.windows(limits.transport)) {}
 
   /// The number of equal parts in which path `w` continues from its last vertex `v`; 0: it ends.
   /// The throughput of a survivor is divided by its probability of survival; the caller divides it

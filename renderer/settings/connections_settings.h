@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "base/settings/field.h"
+#include "renderer/settings/departures.h"
 #include "renderer/settings/emitter_settings.h"
 #include "renderer/settings/node_map_settings.h"
 
@@ -95,11 +96,13 @@ struct PairedSettings {
       "every eye path is connected to its own light path and, at each vertex, to a new point on an "
       "emitter";
   EmitterChoice emitters = EmitterChoice::automatic;
+  DirectPoint direct = DirectPoint::new_point;  // differs from the published value
   bool operator==(const PairedSettings&) const = default;
 };
 template <class V>
 void describe(V& v, PairedSettings& s) {
   describe_emitters(v, s.emitters);
+  describe_direct_point(v, s.direct);
 }
 
 /// connections: uniform.
@@ -125,7 +128,8 @@ struct SkeletonConnectionsSettings : ResamplingSettings {
   NodeVisibilityTest node_visibility = NodeVisibilityTest::rays;
   int map_size = node_map_size;
   bool unshadowed = true;
-  Combination combination = Combination::mixture;  // differs from the published value
+  // These differ from the published values, see their tables:
+  Combination combination = Combination::mixture;
   LightSides sides = LightSides::facing;
   bool operator==(const SkeletonConnectionsSettings&) const = default;
 };
@@ -152,7 +156,7 @@ void describe(V& v, SkeletonConnectionsSettings& s) {
     {.doc = "distribution U: the same for all light vertices, without visibility (eq. 189)"});
   v("combination", s.combination,
     {.doc = "how V, U and the uniform distribution C are combined", .published = "\"max\""});
-  v("sides", s.sides, {.doc = "light vertices that V and U include"});
+  v("sides", s.sides, {.doc = "light vertices that V and U include", .published = "\"both\""});
 }
 
 /// connections: importance_cache.

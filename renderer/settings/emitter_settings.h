@@ -25,7 +25,8 @@ struct EnumTable<EmitterChoice> {
 
 template <class V>
 void describe_emitters(V& v, EmitterChoice& choice) {
-  v("emitters", choice, {.doc = "how next event estimation selects the emitter"});
+  v("emitters", choice,
+    {.doc = "how next event estimation selects the emitter", .published = "\"power\""});
 }
 
 }  // namespace lacuna

@@ -8,6 +8,7 @@
 #include "base/settings/auto_number.h"
 #include "base/settings/field.h"
 #include "renderer/settings/bias.h"
+#include "renderer/settings/departures.h"
 
 namespace lacuna {
 
@@ -56,7 +57,9 @@ struct SkeletonGuideSettings : LightRays {
 
   AutoNumber strength{8};
   AutoNumber probability;
-  ImportanceAim aim = ImportanceAim::last;  // differs from the published value
+  // These differ from the published values, see their tables:
+  ImportanceAim aim = ImportanceAim::last;
+  GuidedRoulette roulette = GuidedRoulette::window;
   bool operator==(const SkeletonGuideSettings&) const = default;
 };
 template <class V>
@@ -77,6 +80,7 @@ void describe(V& v, SkeletonGuideSettings& s) {
      .published = "\"mean\""});
   describe_light_rays(
       v, s, "rays from the lights that estimate the power arriving at each node (eq. 176)");
+  describe_guided_roulette(v, s.roulette);
 }
 
 /// Settings of guides that use the regions of the opening forest labelling.
@@ -86,6 +90,7 @@ struct RegionGuideSettings {
   bool guide_only = false;
   /// A point in the coordinates of the scene's file: it selects the faces for all regions.
   std::optional<std::array<double, 3>> through;
+  GuidedRoulette roulette = GuidedRoulette::window;  // differs from the published value
   bool biased() const { return guide_only; }
   bool operator==(const RegionGuideSettings&) const = default;
 };
@@ -97,7 +102,8 @@ void describe_region_guide(V& v, RegionGuideSettings& s, const char* through) {
     {.doc = "probability of sampling a direction through a face instead of from the BSDF; "
             "\"auto\": learned for each region while rendering",
      .min = 0,
-     .max = most_guided});
+     .max = most_guided,
+     .published = "0.5"});
   v("mixing", s.mixing,
     {.doc = "distance over which the distributions of neighbouring regions are interpolated; 0: no "
             "interpolation, which makes borders visible in the noise",
@@ -110,6 +116,7 @@ void describe_region_guide(V& v, RegionGuideSettings& s, const char* through) {
             "`probability`: biased, because light that does not arrive through its faces is missed "
             "(Noel 2015, 10.4, SIS1 and FIS1)"});
   v("through", s.through, {.doc = through, .min = -1e15, .max = 1e15});
+  describe_guided_roulette(v, s.roulette);
 }
 
 /// The portal, on a shortest path, that rays are sent through.
@@ -129,7 +136,9 @@ struct PortalsGuideSettings : RegionGuideSettings, LightRays {
   static constexpr std::string_view doc =
       "rays through the portals on the shortest paths to where the light arrives (Noel 2015, "
       "10.4.1)";
-  PortalChoice portal = PortalChoice::last;  // differs from the published value
+  // These differ from the published values, see their tables:
+  PortalChoice portal = PortalChoice::last;
+  PortalPaths paths = PortalPaths::lit_regions;
   bool operator==(const PortalsGuideSettings&) const = default;
 };
 template <class V>
@@ -137,10 +146,11 @@ void describe(V& v, PortalsGuideSettings& s) {
   describe_region_guide(v, s,
                         "a point of the empty space, in the coordinates of the scene's file: all "
                         "guided rays, of every region, go through the portal nearest to it (Noel "
-                        "2015, 10.4.1, SIS3 and SIS4), and `portal` and `light_rays` have no "
-                        "effect");
+                        "2015, 10.4.1, SIS3 and SIS4), and `portal`, `paths` and `light_rays` "
+                        "have no effect");
   v("portal", s.portal,
     {.doc = "the portal on a shortest path that rays are sent through", .published = "\"next\""});
+  describe_portal_paths(v, s.paths);
   describe_light_rays(v, s, "rays from the lights that estimate the power arriving in each region");
 }
 
@@ -150,8 +160,10 @@ struct FaceIrradianceGuideSettings : RegionGuideSettings {
   static constexpr std::string_view doc =
       "rays through the faces of a region's border, in proportion to the light that arrives "
       "through each (Noel 2015, 10.4.2)";
+  // These differ from the published values, see their tables:
   double least_distance = 0;
   double least_cosine = 0;
+  FacePaths learn_from = FacePaths::eye;
   bool operator==(const FaceIrradianceGuideSettings&) const = default;
 };
 template <class V>
@@ -173,6 +185,7 @@ void describe(V& v, FaceIrradianceGuideSettings& s) {
      .min = 0,
      .max = 1,
      .published = "0.5"});
+  describe_face_paths(v, s.learn_from);
 }
 
 /// guide: sd_tree.
@@ -183,6 +196,7 @@ struct SdTreeGuideSettings {
       "(Mueller et al. 2017)";
   AutoNumber probability{0.5};  // as published
   int leaf_vertices = 4000;
+  GuidedRoulette roulette = GuidedRoulette::window;  // differs from the published value
   bool operator==(const SdTreeGuideSettings&) const = default;
 };
 template <class V>
@@ -198,6 +212,7 @@ void describe(V& v, SdTreeGuideSettings& s) {
             "iteration (c of the paper)",
      .min = 1,
      .max = 1 << 30});
+  describe_guided_roulette(v, s.roulette);
 }
 
 /// guide: learned_skeleton.

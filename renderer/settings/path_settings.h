@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/settings/retired_key.h"
+#include "renderer/settings/departures.h"
 #include "renderer/settings/emitter_settings.h"
 #include "renderer/settings/guide_settings.h"
 #include "renderer/settings/path_lengths.h"
@@ -24,6 +25,7 @@ struct PathSettings : PathLengths {
   bool next_event_estimation = true;
   EmitterChoice emitters = EmitterChoice::automatic;
   int reuse = 1;
+  Heuristic heuristic = Heuristic::power;  // differs from the published value
 
   /// Why these settings are incompatible; empty if they are compatible.
   std::string_view conflict() const {
@@ -52,6 +54,7 @@ void describe(V& v, PathSettings& s) {
      .min = 1,
      .max = 64,
      .unit = "pixels"});
+  describe_heuristic(v, s.heuristic);
 }
 
 }  // namespace lacuna

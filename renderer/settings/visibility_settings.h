@@ -30,17 +30,20 @@ template <class V>
 void describe(V&, NoVisibilitySettings&) {}
 
 /// The variance that determines the probability of testing a light.
-enum class VarianceOf { picture, point };
+enum class VarianceOf { picture, point, cache_points };
 
 template <>
 struct EnumTable<VarianceOf> {
-  static constexpr std::array<EnumValue<VarianceOf>, 2> values{{
+  static constexpr std::array<EnumValue<VarianceOf>, 3> values{{
       {VarianceOf::picture, "picture",
        "the variance of contributions over the whole picture, so that tests follow each pixel's "
        "share of the picture's error"},
       {VarianceOf::point, "point",
-       "the variance of contributions at the nearest cache points (Nabata et al., eq. 8); if no "
-       "light is visible from them, every light is tested"},
+       "the variance of contributions at the nearest cache points, interpolated as if they had the "
+       "shading point's albedo; if no light is visible from them, every light is tested"},
+      {VarianceOf::cache_points, "cache_points",
+       "the variance of contributions at the nearest cache points, interpolated as it is (Nabata "
+       "et al., eq. 8)"},
   }};
 };
 
@@ -104,7 +107,8 @@ void describe_chance(V& v, ChanceSettings& s) {
      .min = 0,
      .max = 1e6,
      .published = "0"});
-  v("variance", s.variance, {.doc = "which variance is sigma^2 (eq. 8)", .published = "\"point\""});
+  v("variance", s.variance,
+    {.doc = "which variance is sigma^2 (eq. 8)", .published = "\"cache_points\""});
   v("draws", s.draws, {.doc = "how the lights to test are sampled", .published = "\"bernoulli\""});
 }
 

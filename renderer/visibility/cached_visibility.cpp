@@ -16,9 +16,7 @@ ProbabilisticVisibility::At ProbabilisticVisibility::at(const ShadingPoint& poin
           {.k = other_rays_ + static_cast<float>(settings_.term_cost),
            .c = 1,
            .least = static_cast<float>(settings_.epsilon_probability),
-           .over_sigma =
-               1 / (settings_.variance == VarianceOf::point ? points_.deviation(point, neighbours)
-                                                            : points_.deviation())},
+           .over_sigma = 1 / points_.deviation(settings_.variance, point, neighbours)},
           {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
 }
 

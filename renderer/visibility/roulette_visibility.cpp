@@ -12,13 +12,13 @@ Counters RouletteVisibility::begin(const LightPass& pass) {
 RouletteVisibility::At RouletteVisibility::at(const ShadingPoint& point,
                                               const IterationContext& context) const {
   const bool derived = settings_.rule == RouletteRule::derived;
+  const auto neighbours = settings_.variance == VarianceOf::picture ? CachePoints::Neighbours{}
+                                                                    : points_.nearest(point);
   const float other_time = other_rays_ + static_cast<float>(settings_.term_cost);
   return {{.k = derived ? other_time : other_time + 1,
            .c = derived ? 1.0F : 0.0F,
            .least = static_cast<float>(settings_.epsilon_probability),
-           .over_sigma = 1 / (settings_.variance == VarianceOf::point
-                                  ? points_.deviation(point, points_.nearest(point))
-                                  : points_.deviation())},
+           .over_sigma = 1 / points_.deviation(settings_.variance, point, neighbours)},
           {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
 }
 

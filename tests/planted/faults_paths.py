@@ -53,7 +53,7 @@ FAULTS = [
     Fault("an emitter hit counts next event estimation by power", "renderer/path/connect.h",
           ".more = one_less * double(e.next_event_ratio)", ".more = one_less"),
     Fault("an emitter hit is weighed by the balance heuristic", "renderer/path/direct_light.h",
-          "const double w = power_of_two(hit_weight(v, depth, *e, counts_, guide_));",
+          "const double w = of_two(hit_weight(v, depth, *e, counts_, guide_));",
           "const double w = hit_weight(v, depth, *e, counts_, guide_);"),
     Fault("light paths count next event estimation by power", "renderer/path/light_batch.h",
           "v.next_event_ratio = next_event_.ratio(emitters_[i], v);", "v.next_event_ratio = 1;"),

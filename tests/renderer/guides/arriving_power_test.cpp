@@ -154,6 +154,38 @@ TEST(ArrivingPower, OfAPointIsItsIntensityTimesTheSolidAngle) {
   }
 }
 
+// Where it starts, not where it arrives: of points, of a lamp, and of light from infinity.
+TEST(BrightestPart, IsThatOfTheEmitters) {
+  const PartedBox box;
+  const ThreadPool pool(1);
+  const auto part_at = [&](const V3d& x) {
+    return box.part(*voxel_at(box.transform.to_grid(x), box.part.size()));
+  };
+  const auto brightest = [&](SceneParts p) {
+    return brightest_part(test::lit_scene(std::move(p.data)), box.lookup(), part_count, 1000, pool);
+  };
+  const auto points = [] {
+    SceneParts p;
+    add_walls(p, false, test::diffuse(Rgb(0.5F)));
+    p.light(PunctualLight::Kind::point, {0.3F, -0.2F, 0.4F}, {0, 0, -1}, Rgb(1));
+    p.light(PunctualLight::Kind::point, {-0.6F, 0.55F, -0.1F}, {0, 0, -1}, Rgb(8));
+    p.light(PunctualLight::Kind::directional, {0, 0, 0}, {0, -1, 0}, Rgb(1000));
+    return p;
+  };
+  EXPECT_EQ(brightest(points()), part_at({-0.6, 0.55, -0.1}));
+  SceneParts lamp = points();  // a small one that shines down, in the middle of a voxel
+  lamp.quad({0.62F, 0.62F, 0.62F}, {0.01F, 0, 0}, {0, 0, 0.01F},
+            lamp.material(test::lamp(Rgb(1e7F))));
+  EXPECT_EQ(brightest(std::move(lamp)), part_at({0.62, 0.62, 0.62}));
+  SceneParts sun;
+  add_walls(sun, true, test::diffuse(Rgb(0.5F)));
+  sun.light(PunctualLight::Kind::directional, {0, 0, 0}, {0, 0, -1}, Rgb(1));
+  const Scene scene = test::lit_scene(std::move(sun.data));
+  const auto power = arriving_power(scene, box.lookup(), part_count, 1000, pool);
+  EXPECT_EQ(brightest_part(scene, box.lookup(), part_count, 1000, pool),
+            std::max_element(power.begin(), power.end()) - power.begin());
+}
+
 TEST(ArrivingPower, OfALampIsItsRadianceTimesTheFormFactor) {
   const PartedBox box;
   const ThreadPool pool(2);

@@ -41,6 +41,10 @@ std::vector<Case> cases() {
   thresholds.least_cosine = 0.5;
   all.push_back({"far_facing_faces", thresholds});
   all.push_back({"far_facing_faces_through_one_border", thresholds, true});
+  FaceIrradianceGuideSettings own_paths;
+  own_paths.probability = AutoNumber{0.5};
+  own_paths.learn_from = FacePaths::face;
+  all.push_back({"faces_by_their_own_paths", own_paths});
   all.push_back({"through_one_portal", test::in_small_pictures(PortalsGuideSettings{}), true});
   all.push_back(
       {"through_one_border", test::in_small_pictures(FaceIrradianceGuideSettings{}), true});

@@ -169,5 +169,28 @@ TEST(NamedFaces, PointsThatNameNoneAreRefused) {
   EXPECT_EQ(refusal(empty, border), "");
 }
 
+// 10.4.1 as published: one portal in each region but the light's, and no light that lowers the
+// guide's probability.
+TEST(PortalPaths, LeadToTheRegionWithTheLight) {
+  PortalsGuideSettings settings;
+  const auto of = [&](PortalPaths paths) {
+    settings.paths = paths;
+    GuidedScene scene(ajar, settings, 0, std::nullopt, resolution);
+    std::map<std::string, double> all;
+    for (const auto& [name, value] : scene.directions().statistics()) all[name] = value;
+    all["least"] = 1;
+    for (const Vertex& v : scene.guided_vertices(200)) {
+      all["least"] = std::min(all["least"], double(v.guiding_cell.probability));
+    }
+    return all;
+  };
+  auto one = of(PortalPaths::light_region), mixed = of(PortalPaths::lit_regions);
+  EXPECT_EQ(one["exits_mean"], 1);
+  EXPECT_EQ(one["guided_regions"], one["regions"] - 1);
+  EXPECT_NEAR(one["least"], 1, 1e-6);
+  EXPECT_GT(mixed["exits_mean"], 1);
+  EXPECT_LT(mixed["least"], 0.99);
+}
+
 }  // namespace
 }  // namespace lacuna

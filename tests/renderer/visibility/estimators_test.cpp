@@ -68,7 +68,7 @@ TEST_P(Estimators, HaveTheMeanOfExact) {
       changed<Probabilistic>([](auto& s) { s.term_cost = 0, s.epsilon_probability = 0.3; }),
       changed<Probabilistic>([](auto& s) { s.epsilon_probability = 1; }),
       changed<Probabilistic>([](auto& s) {  // as published
-        s.variance = VarianceOf::point, s.term_cost = 0;
+        s.variance = VarianceOf::cache_points, s.term_cost = 0;
         s.draws = TestDraws::bernoulli, s.cache_lights = CacheLights::all;
       }),
   };
@@ -245,9 +245,31 @@ TEST(CachePoints, KnowWhatTheySee) {
       }
       const auto n = static_cast<double>(lit.lights().size());
       const double deviation = std::sqrt(std::max(0.0, sum2 / n - sum / n * (sum / n)));
-      EXPECT_NEAR(double(cache.deviation(p, neighbours)), deviation, 1e-4 * deviation + 1e-12);
+      EXPECT_NEAR(double(cache.deviation(VarianceOf::point, p, neighbours)), deviation,
+                  1e-4 * deviation + 1e-12);
     }
   });
+}
+
+// Eq. 8 interpolates what cache points have stored, whatever the albedo of the shading point.
+TEST(CachePoints, DeviationIsStoredOrScaledByTheReceiver) {
+  const LitScene lit({"cornell"}, 200, 2);
+  CachePoints cache(1 << 20, 1, CachePoints::Keep::variances);  // one for each pixel
+  const IterationContext context = lit.context(1);
+  cache.build(lit.pass(context));
+  int scaled = 0;
+  lit.with_points(200, [&](std::span<const ShadingPoint> points) {
+    for (const ShadingPoint& p : points) {
+      const CachePoints::Neighbours own = cache.nearest(p);
+      const float stored = cache.deviation(VarianceOf::cache_points, p, own);
+      EXPECT_NEAR(stored, cache.deviation(VarianceOf::point, p, own), 1e-5F * stored);
+      EXPECT_EQ(stored, cache.deviation(VarianceOf::cache_points, points[0], own));
+      const float other = cache.deviation(VarianceOf::point, points[0], own);
+      EXPECT_NEAR(other, stored * points[0].scale / p.scale, 1e-5F * other);
+      if (std::abs(points[0].scale - p.scale) > 0.01F * p.scale) ++scaled;
+    }
+  });
+  EXPECT_GT(scaled, 5) << "all have one albedo";
 }
 
 // A light that shines along the cache point's own wall gives it nothing and is seen all the same.
@@ -262,7 +284,8 @@ TEST(CachePoints, KnowAllLightsIfTheyTestThem) {
   lit.with_points(200, [&](std::span<const ShadingPoint> points) {
     for (const ShadingPoint& p : points) {
       const CachePoints::Neighbours neighbours = cache.nearest(p);
-      EXPECT_EQ(cache.deviation(p, neighbours), only_lit.deviation(p, only_lit.nearest(p)));
+      EXPECT_EQ(cache.deviation(VarianceOf::point, p, neighbours),
+                only_lit.deviation(VarianceOf::point, p, only_lit.nearest(p)));
       const V3f n = p.vertex->side(), x = p.vertex->surface.x;
       Terms terms;
       Lanes q, q_lit;
