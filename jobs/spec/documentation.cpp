@@ -126,19 +126,28 @@ void put_section(std::string& page, const Type& object, const std::string& path)
 namespace {
 
 template <class T>
-std::string titled_page(std::string_view title) {
+std::string titled_page(std::string_view title, std::string_view note = {}) {
   std::string page = fmt::format(
       "# {}\n\n"
       "One JSON object. Keys that are left out take their defaults; unknown keys are "
-      "errors.\n",
-      title);
+      "errors.\n{}",
+      title, note);
   put_section(page, TypeReader::type_of(T{}, Field{}), "");
   return page;
 }
 
 }  // namespace
 
-std::string job_documentation() { return titled_page<JobSpec>("The job file"); }
+std::string job_documentation() {
+  return titled_page<JobSpec>(
+      "The job file",
+      "\n`\"as\": \"published\"`, in the job or in any object below it with a value \"as "
+      "published\", "
+      "selects that value for every setting that the object and those below it leave out; "
+      "`\"as\": \"default\"` undoes it further below. `{\"type\": \"path\", \"as\": \"published\", "
+      "\"guide\": {\"type\": \"skeleton\", \"strength\": 8}}` is the method of Noel 2015, chapter "
+      "9.\n");
+}
 std::string sweep_documentation() { return titled_page<SweepSpec>("The sweep file"); }
 
 }  // namespace lacuna

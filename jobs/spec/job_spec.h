@@ -182,7 +182,8 @@ void describe(V& v, JobSpec& s) {
   v("particles", s.particles, {.doc = "point lights in addition to those of the scene"});
   v("material", s.material, {.doc = "change the roughness of one of the scene's materials"});
   v("seed", s.seed, {.doc = "seed of the random numbers", .min = 0, .max = 9007199254740991.0});
-  v("sampler", s.sampler, {.doc = "random numbers of eye paths and light paths"});
+  v("sampler", s.sampler,
+    {.doc = "random numbers of eye paths and light paths", .published = "\"independent\""});
   v("shards", s.shards,
     {.doc = "number of parts of the iterations that are rendered separately and merged",
      .min = 1,

@@ -17,6 +17,7 @@
 #include "jobs/spec/json_document.h"
 #include "jobs/spec/limits.h"
 #include "jobs/spec/problems.h"
+#include "jobs/spec/published.h"
 
 namespace lacuna {
 
@@ -52,10 +53,12 @@ std::optional<std::size_t> read_alternative(const JsonCursor& found,
                                             std::span<const std::string_view> names);
 
 /// The reading visitor: fills settings from an object of a document. A missing key leaves the
-/// member's default; a problem is recorded and reading continues.
+/// member's default, or sets its published value (published.h); a problem is recorded and reading
+/// continues.
 class ObjectReader {
  public:
-  explicit ObjectReader(const JsonCursor& object) : object_(object) {}
+  /// `values`: of keys that are missing in `object` and below.
+  ObjectReader(const JsonCursor& object, Values values) : object_(object), values_(values) {}
 
   template <class T>
   void operator()(std::string_view key, T& member, const Field& field) {
@@ -64,6 +67,8 @@ class ObjectReader {
       read_value(*found, member, field);
     } else if (field.required) {
       object_.refuse_missing(key, field.doc);
+    } else if (values_ == Values::published) {
+      read_published(member, field);
     }
   }
 
@@ -82,33 +87,61 @@ class ObjectReader {
     }
   }
   void refuse_unknown_keys() const { check_keys(object_, known_); }
+  /// Reads the key that selects `values` for `T`, if there is one.
+  template <class T>
+  void read_values_key() {
+    if (!PublishedFinder::has<T>()) return;
+    know(values_key);
+    if (const auto found = object_.find(values_key)) read_enum(*found, values_);
+  }
 
   template <class T>
-  static void read_value(const JsonCursor& found, T& out, const Field& field);
+  void read_value(const JsonCursor& found, T& out, const Field& field) const;
 
  private:
+  /// Sets the published values of a member that the object lacks.
+  template <class T>
+  void read_published(T& member, const Field& field) const {
+    if (!field.published.empty()) {
+      const Json value = Json::parse(field.published);
+      read_value(object_.in_place(value), member, field);
+    } else if constexpr (is_variant<T>) {
+      std::visit([&](auto& s) { read_published_members(s); }, member);
+    } else if constexpr (Described<T>) {
+      read_published_members(member);
+    }
+  }
+  template <class T>
+  void read_published_members(T& settings) const {
+    const Json nothing = Json::object();
+    const JsonCursor object = object_.in_place(nothing);
+    ObjectReader reader(object, Values::published);
+    describe(reader, settings);
+  }
   template <class T, std::size_t N>
-  static void read_array(const JsonCursor& found, std::array<T, N>& out, const Field& field);
+  void read_array(const JsonCursor& found, std::array<T, N>& out, const Field& field) const;
   template <class T>
-  static void read_list(const JsonCursor& found, std::vector<T>& out, const Field& field);
+  void read_list(const JsonCursor& found, std::vector<T>& out, const Field& field) const;
   template <class T>
-  static void read_name_or(const JsonCursor& found, NameOr<T>& out, const Field& field);
+  void read_name_or(const JsonCursor& found, NameOr<T>& out, const Field& field) const;
   template <class T>
-  static void read_table(const JsonCursor& found, JsonTable<T>& out, const Field& field);
+  void read_table(const JsonCursor& found, JsonTable<T>& out, const Field& field) const;
   template <class... Ts>
-  static void read_variant(const JsonCursor& found, std::variant<Ts...>& out);
+  void read_variant(const JsonCursor& found, std::variant<Ts...>& out) const;
   template <class E>
   static void read_enum(const JsonCursor& found, E& out);
 
   const JsonCursor& object_;
+  Values values_;
   std::vector<std::string_view> known_;
 };
 
 /// Reads a described struct; `out` holds the defaults.
 template <Described T>
-void read_settings(const JsonCursor& found, T& out) {
+void read_settings(const JsonCursor& found, T& out, Values values = Values::defaults) {
   if (!found.check_object()) return;
-  ObjectReader reader(found);
+  ObjectReader reader(found, values);
+  reader.read_values_key<T>();
   describe(reader, out);
   reader.know_retired_keys<T>();
   reader.refuse_unknown_keys();
@@ -121,7 +154,7 @@ void read_settings(const Json& document, std::vector<Problem>& problems, T& out)
 }
 
 template <class T>
-void ObjectReader::read_value(const JsonCursor& found, T& out, const Field& field) {
+void ObjectReader::read_value(const JsonCursor& found, T& out, const Field& field) const {
   if constexpr (std::is_same_v<T, bool>) {
     if (const auto v = found.boolean()) out = *v;
   } else if constexpr (Integer<T>) {
@@ -153,14 +186,15 @@ void ObjectReader::read_value(const JsonCursor& found, T& out, const Field& fiel
   } else if constexpr (is_variant<T>) {
     read_variant(found, out);
   } else if constexpr (Described<T>) {
-    read_settings(found, out);
+    read_settings(found, out, values_);
   } else {
     static_assert(unsupported_type<T>, "no reader for this type of member");
   }
 }
 
 template <class T, std::size_t N>
-void ObjectReader::read_array(const JsonCursor& found, std::array<T, N>& out, const Field& field) {
+void ObjectReader::read_array(const JsonCursor& found, std::array<T, N>& out,
+                              const Field& field) const {
   if (!found.check_list_of(N)) return;
   for (std::size_t i = 0; i < N; ++i) {
     read_value(found.at(i), out[i], field);
@@ -168,7 +202,8 @@ void ObjectReader::read_array(const JsonCursor& found, std::array<T, N>& out, co
 }
 
 template <class T>
-void ObjectReader::read_list(const JsonCursor& found, std::vector<T>& out, const Field& field) {
+void ObjectReader::read_list(const JsonCursor& found, std::vector<T>& out,
+                             const Field& field) const {
   if (!found.check_list(length_limits(field))) return;
   out.clear();
   for (std::size_t i = 0; i < found.value().size(); ++i) {
@@ -179,9 +214,9 @@ void ObjectReader::read_list(const JsonCursor& found, std::vector<T>& out, const
 }
 
 template <class T>
-void ObjectReader::read_name_or(const JsonCursor& found, NameOr<T>& out, const Field& field) {
+void ObjectReader::read_name_or(const JsonCursor& found, NameOr<T>& out, const Field& field) const {
   if (found.value().is_object()) {
-    read_settings(found, out.object.emplace());
+    read_settings(found, out.object.emplace(), values_);
   } else if (found.value().is_string()) {
     read_value(found, out.name, field);
   } else {
@@ -190,7 +225,8 @@ void ObjectReader::read_name_or(const JsonCursor& found, NameOr<T>& out, const F
 }
 
 template <class T>
-void ObjectReader::read_table(const JsonCursor& found, JsonTable<T>& out, const Field& field) {
+void ObjectReader::read_table(const JsonCursor& found, JsonTable<T>& out,
+                              const Field& field) const {
   if (!found.check_object() || !check_size(found, length_limits(field))) return;
   out.clear();
   for (const auto& [key, value] : found.value().items()) {
@@ -199,15 +235,16 @@ void ObjectReader::read_table(const JsonCursor& found, JsonTable<T>& out, const 
 }
 
 template <class... Ts>
-void ObjectReader::read_variant(const JsonCursor& found, std::variant<Ts...>& out) {
+void ObjectReader::read_variant(const JsonCursor& found, std::variant<Ts...>& out) const {
   static constexpr std::array<std::string_view, sizeof...(Ts)> names{Ts::name...};
   const auto chosen = read_alternative(found, names);
   if (!chosen) return;
   const Json nothing = Json::object();
   const JsonCursor object = found.in_place(found.value().is_string() ? nothing : found.value());
   const auto read_as = [&]<class T>(T settings) {
-    ObjectReader reader(object);
+    ObjectReader reader(object, values_);
     reader.know(variant_key);
+    reader.read_values_key<T>();
     describe(reader, settings);
     reader.know_retired_keys<T>();
     reader.refuse_unknown_keys();

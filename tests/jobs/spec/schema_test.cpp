@@ -8,6 +8,7 @@
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/json_writer.h"
 #include "jobs/spec/problems.h"
+#include "jobs/spec/published.h"
 #include "mini_schema.h"
 #include "random_settings.h"
 
@@ -54,7 +55,12 @@ class TableCheck {
     descend(property, member);
   }
 
-  void check_count() const { EXPECT_EQ(object_["properties"].size(), count_); }
+  /// Nothing else is there, but "as" where there are published values.
+  void check_count() const {
+    const bool as = object_["properties"].contains(values_key);
+    EXPECT_EQ(as, object_.dump().find("as published: ") != std::string::npos);
+    EXPECT_EQ(object_["properties"].size(), count_ + (as ? 1 : 0));
+  }
 
  private:
   template <class T>
@@ -217,7 +223,10 @@ TEST(Documentation, HoldsEveryKeyAndName) {
   const auto has = [&](const std::string& text) {
     EXPECT_NE(page.find(text), std::string::npos) << text;
   };
-  for (const auto& [key, value] : schema()["properties"].items()) has("\n| `" + key + "` | ");
+  for (const auto& [key, value] : schema()["properties"].items()) {
+    if (key != values_key) has("\n| `" + key + "` | ");
+  }
+  has("`\"as\": \"published\"`");
   for (const auto& v : EnumTable<ErrorMetric>::values) {
     has("- `" + std::string(v.name) + "`: " + std::string(v.doc) + "\n");
   }
