@@ -4,9 +4,8 @@ that this project has, with every kind of connections, at the thesis' settings (
 
 from harness.entry import Entries
 from harness.measured import error_at, gain_at, geometric_mean_of, speed_up_to, time_to
-from harness.run import KINDS, Table, cell_with
+from harness.run import AS, KINDS, Table, cell_with
 from harness.verdict import at_least, near
-from noel_shadows import RADII
 
 ENTRIES = Entries()
 RESAMPLING = "bdpt with connections: skeleton, importance_cache"
@@ -32,17 +31,14 @@ OURS = {"BPT": bdpt({"type": "paired"}), "ICBPT": bdpt({"type": "importance_cach
         "SkelBPT": bdpt({"type": "skeleton"}), "uniform": bdpt({"type": "uniform"})}
 
 
-def as_published(connections, **more):
+def as_published(connections):
     """11.2 to 11.5, and what is known of the author's code: all samples counted, no roulette anywhere, every light path
-    joined to the eye."""
-    resampling = {"count_as": 0, "roulette": 0, "splat_paths": 1, **more}
-    return bdpt({"type": connections, **(resampling if connections != "paired" else {})}, roulette_depth=DEPTH)
+    joined to the eye, the max heuristic over all distributions."""
+    return bdpt({"type": connections}, roulette_depth=DEPTH, **AS["published"])
 
 
-# The max heuristic over all distributions, and eq. 187 for light vertices of either side.
-THESIS = {"BPT": as_published("paired"),
-          "ICBPT": as_published("importance_cache", combination="max", unshadowed=True, bounded=True),
-          "SkelBPT": as_published("skeleton", combination="max", sides="both"),
+# Importance caching had two distributions in the author's runs, F and C.
+THESIS = {"BPT": as_published("paired"), "ICBPT": as_published("importance_cache"), "SkelBPT": as_published("skeleton"),
           "uniform": as_published("uniform")}
 
 
@@ -71,10 +67,10 @@ def with_scenes(value, scenes, full):
 
 def resampling_sweep(full, methods, scenes, seeds=3, which="ours"):
     """The value of a sweep file; the first of the methods is the baseline. CPU seconds are the clock: they hold on a busy
-    machine, too. `which`: whose radius the skeleton's nodes have."""
+    machine, too. `which`: whose settings the job has, besides those of the methods."""
     return with_scenes({
         "label": "connections of bidirectional path tracing",
-        "job": {"analysis": {"resolution": 128, "node_radius": RADII[which]}},
+        "job": {"analysis": {"resolution": 128}, **AS[which]},
         "axes": {"/integrator": list(methods.values())},
         "seeds": seeds,
         "baseline": {"/integrator": next(iter(methods.values()))},

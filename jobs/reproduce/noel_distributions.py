@@ -3,11 +3,11 @@
 from harness import layers
 from harness.entry import Entries
 from harness.measured import Measured, error_at, exact, gain_at, geometric_mean_of, mean_of
-from harness.run import KINDS, Table, cell_with
+from harness.run import AS, KINDS, Table, cell_with
 from harness.verdict import at_least, beside, near
 from noel_connections import METHODS, OURS, RESAMPLING, SCENES, resampling_sweep
 from noel_regions import Borders, one_surface
-from noel_shadows import CHESSBOARD, GRID, RADII
+from noel_shadows import CHESSBOARD, GRID, NODES
 from noel_stand_ins import STAND_IN, STAND_INS
 
 ENTRIES = Entries()
@@ -25,28 +25,28 @@ def table_5_sweep(full):
     value = resampling_sweep(full, {"SkelBPT": SKELETON}, scenes, seeds=1)
     del value["compare_at"], value["baseline"], value["job"]["reference_iterations"]
     value["job"]["analysis"] = GRID
-    value["axes"]["/analysis/node_radius"] = list(RADII.values())
+    value["axes"]["/analysis/node_radius"] = list(NODES.values())
     value["zip"] = [{pointer: [s[pointer] for s in scenes] for pointer in ("/scene", "/camera", "/resolution")}]
     value["job"]["budget"] = {"iterations": 16 if full else 4}
     return value
 
 
 TABLE_5 = {"Door": (74, 9), "Sponza": (666, 45), "Sibenik": (1420, 85)}  # nodes, and those of an iteration
-NODES = {"Door": CHESSBOARD, "Sponza": CHESSBOARD,
+WHY = {"Door": CHESSBOARD, "Sponza": CHESSBOARD,
          "Sibenik": "another scene: a nave with two rows of pillars, which has fewer passages than the church"}
 
 
 @ENTRIES.measured(
     "noel-table-5", "Noel 2015, Table 5, p. 167", "nodes of the filtered skeleton, and nodes used per iteration",
     "bdpt with connections: skeleton",
-    tuple(near(f"{name}, {what}", count, why=NODES.get(name, "")) for name, counts in TABLE_5.items()
+    tuple(near(f"{name}, {what}", count, why=WHY.get(name, "")) for name, counts in TABLE_5.items()
           for what, count in zip(("nodes", "per iteration"), counts)),
     sweep=table_5_sweep)
 def table_5(run):
     """Nodes of the filtered skeleton, and how many of them have distributions in an iteration."""
     answers = run.answers(table_5_sweep(run.full))
     for name, scene in (("Door", SCENES["door"]), ("Sponza", SCENES["sponza"]), ("Sibenik", STAND_INS["Sibenik"])):
-        for which, radius in RADII.items():
+        for which, radius in NODES.items():
             told = run.report(cell_with(answers, scene=scene["/scene"], node_radius=radius))["integrator"]
             run.found(f"{name}, nodes", **{which: exact(told["nodes"])})
             run.found(f"{name}, per iteration", **{which: Measured(told["nodes_used"])})
@@ -124,13 +124,12 @@ def fig_106(run):
            "budget": {"cpu_seconds": 7200 if run.full else 30}, "layers": ["distributions"]}
     rows = []
     for which in KINDS:
-        analysis = {"node_radius": RADII[which]}
-        run.render(f"nodes-{which}", {**job, "analysis": analysis, "budget": {"iterations": 1}, "layers": ["normal", "depth"],
+        run.render(f"nodes-{which}", {**job, **AS[which], "budget": {"iterations": 1}, "layers": ["normal", "depth"],
                                       "integrator": {"type": "inspect", "show": "filtered_mapping"}})
         nodes = run.place(f"nodes-{which}")
         borders = Borders(list(zip(*layers.channels(nodes, ""))), one_surface(nodes), *side, max(2, side[0] // 128))
         for name in ("SkelBPT", "ICBPT"):
-            run.render(f"{name}-{which}", {**job, "analysis": analysis, "integrator": METHODS[which][name]})
+            run.render(f"{name}-{which}", {**job, **AS[which], "integrator": METHODS[which][name]})
             folder = run.place(f"{name}-{which}")
             run.show(f"{name}, {which}", folder)
             light = {layer: [sum(p) for p in zip(*layers.channels(folder, layer))]

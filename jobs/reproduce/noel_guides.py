@@ -6,7 +6,7 @@ import statistics
 from harness import layers
 from harness.entry import Entries
 from harness.measured import error_at, gain_at, geometric_mean_of
-from harness.run import KINDS, Table, cell_with
+from harness.run import AS, KINDS, Table, cell_with
 from harness.verdict import at_least, at_most, beside
 
 ENTRIES = Entries()
@@ -52,23 +52,24 @@ def skeleton(strength, **more):
 
 
 def as_published(strength):
-    """Eqs 162 and 163, and half of the rays (9.4)."""
-    return skeleton(strength, aim="mean")
+    """Eqs 162 and 163, and half of the rays (9.4); paths are neither split nor kept in a window."""
+    return {"type": "skeleton", "as": "published", "strength": strength}
 
 
 OURS = skeleton("auto", probability="auto")
 LEARNED = {"type": "learned_skeleton"}
 
 
-def guide_sweep(full, name, guides, seeds, seed=1):
-    """Guides in one configuration; the first is the baseline. CPU seconds are the clock: they hold on a busy machine."""
+def guide_sweep(full, name, guides, seeds, seed=1, which="ours"):
+    """Guides in one configuration; the first is the baseline. CPU seconds are the clock: they hold on a busy machine. `which`:
+    whose weights (eq. 119) and random numbers all have."""
     scene = {**{pointer: None for pointer in POINTERS}, **SCENES[name]}
     if not full:
         scene["/resolution"] = [side // (2 if name == "corridor" else 4) for side in scene["/resolution"]]
         scene["/reference"] = "auto"
     return {
         "label": f"guided rays, {name}",
-        "job": {"integrator": {"type": "path", "max_depth": 6}, "analysis": {"resolution": 128}, "seed": seed,
+        "job": {**AS[which], "integrator": {"type": "path", "max_depth": 6}, "analysis": {"resolution": 128}, "seed": seed,
                 "budget": {"cpu_seconds": 300 if full else 2}, "reference_iterations": 4000 if full else 128},
         "axes": {GUIDE: guides},
         "zip": [{pointer: [scene[pointer]] for pointer in POINTERS}],
@@ -83,36 +84,37 @@ def chosen_strength(run, name):
     if name in STRENGTH:
         return STRENGTH[name]
     guides = [as_published(s) for s in STRENGTHS]
-    answers = run.answers(guide_sweep(run.full, name, guides, seeds=3 if run.full else 1, seed=1001),
+    answers = run.answers(guide_sweep(run.full, name, guides, 3 if run.full else 1, 1001, "published"),
                           shared=f"noel-strength-{name.replace(' ', '-')}")
     return min(STRENGTHS, key=lambda s: error_at(cell_with(answers, guide=as_published(s))["at"][-1]).value)
 
 
-def judged_cells(run, name):
-    """The answers to BSDF sampling, to the guide as published, to ours and to the one that learns from the skeleton on, in one
-    configuration, and the strength."""
+def judged_cells(run, name, which):
+    """The answers to BSDF sampling, and to the guide as published or to ours and the one that learns from the skeleton on, in
+    one configuration, and the strength."""
     strength = chosen_strength(run, name)
-    guides = {"BSDF": BSDF, "published": as_published(strength), "ours": OURS, "learned": LEARNED}
-    sweep = guide_sweep(run.full, name, list(guides.values()), seeds=5 if run.full else 3)
-    answers = run.answers(sweep, shared=f"noel-guided-{name.replace(' ', '-')}")
+    guides = {"BSDF": BSDF, **({"published": as_published(strength)} if which == "published" else
+                               {"ours": OURS, "learned": LEARNED})}
+    sweep = guide_sweep(run.full, name, list(guides.values()), 5 if run.full else 3, which=which)
+    answers = run.answers(sweep, shared=f"noel-guided-{which}-{name.replace(' ', '-')}")
     return answers, {key: cell_with(answers, guide=guide) for key, guide in guides.items()}, strength
 
 
-def convergence(name, cells, strength):
+def convergence(name, which, cells, strength):
     """What every guide reached, in the course of time."""
-    return Table((f"{name}, CPU seconds", "BSDF", f"published, s = {strength}", "ours", "learned skeleton"), [
+    return Table((f"{name}, {which}, CPU seconds", *(f"{key}, s = {strength}" if key == "published" else key for key in cells)), [
         (f"{at['seconds']:.3g}", *(str(error_at(c["at"][i])) for c in cells.values()))
         for i, at in enumerate(cells["BSDF"]["at"])])
 
 
 def measure_configuration(run, name):
     """Figs 71 to 75: errors at equal time."""
-    _, cells, strength = judged_cells(run, name)
     for which in KINDS:
+        _, cells, strength = judged_cells(run, name, which)
         run.found(GAIN, **{which: gain_at(cells[which]["at"][-1])})
         run.show(which, run.run_folder(cells[which]))
-    run.show("BSDF sampling", run.run_folder(cells["BSDF"]))
-    run.tables.append(convergence(name, cells, strength))
+        run.show(f"BSDF sampling, {which}", run.run_folder(cells["BSDF"]))
+        run.tables.append(convergence(name, which, cells, strength))
     note_configuration(run, name, strength)
 
 
@@ -136,11 +138,11 @@ def guided(number, page, name, configuration, minutes, *more):
 
 @ENTRIES.measured(*guided(71, 132, "corridor", "corridor, diffuse, s = 16", 20, at_most(
     "iterations of BSDF sampling / with s = 16, at equal time", 10694 / 4513)),
-    sweep=lambda full: guide_sweep(full, "corridor", [BSDF, as_published(16), OURS], 3))
+    sweep=lambda full: guide_sweep(full, "corridor", [BSDF, as_published(16)], 3, which="published"))
 def fig_71(run):
     """Corridor."""
     measure_configuration(run, "corridor")
-    answers, cells, _ = judged_cells(run, "corridor")
+    answers, cells, _ = judged_cells(run, "corridor", "published")
     plain, guided_by = ([run.report(cells[key], seed)["counts"]["iterations"] for seed in range(answers["seeds"])]
                         for key in ("BSDF", "published"))
     run.found("iterations of BSDF sampling / with s = 16, at equal time",
@@ -229,7 +231,8 @@ def fig_76(run):
     scene = {pointer.lstrip("/"): value for pointer, value in SCENES["sponza dark"].items() if pointer != "/reference"}
     job = {**scene, "resolution": [1024, 512] if run.full else [256, 128], "analysis": {"resolution": 128},
            "budget": {"iterations": 512 if run.full else 32}}
-    ends = [(f"s-{s}", {"type": "path", "max_depth": 6, "guide": as_published(s)}) for s in (STRENGTHS[0], STRENGTHS[-1])]
+    ends = [(f"s-{s}", {"type": "path", "max_depth": 6, **AS["published"], "guide": as_published(s)})
+            for s in (STRENGTHS[0], STRENGTHS[-1])]
     blue, red = frames(run, job, *ends)
     run.found("blue frame: variance at least strength / at largest", published=blue)
     run.found("red frame: variance at least strength / at largest", published=red)
@@ -244,16 +247,17 @@ def fig_76(run):
     "noel-fig-77", "Noel 2015, Fig. 77, p. 138", "convergence: lower error in every configuration",
     SKELETON_GUIDE, (*(at_least(f"{c}: {GAIN}", 1, why=WHY.get(c, "")) for c in SCENES),
                      *(at_least(f"{c}: {GAIN_LEARNED}", 1) for c in SCENES)),
-    sweep=lambda full: guide_sweep(full, "sponza dark", [BSDF, as_published(8), OURS, LEARNED], 3))
+    sweep=lambda full: guide_sweep(full, "sponza dark", [BSDF, OURS, LEARNED], 3))
 def fig_77(run):
     """Rays guided by the skeleton, and by what is learned from it on, against BSDF sampling, at equal time, in every
     configuration."""
     for name in SCENES:
-        _, cells, strength = judged_cells(run, name)
         for which in KINDS:
+            _, cells, strength = judged_cells(run, name, which)
             run.found(f"{name}: {GAIN}", **{which: gain_at(cells[which]["at"][-1])})
-        run.found(f"{name}: {GAIN_LEARNED}", ours=gain_at(cells["learned"]["at"][-1]))
-        run.tables.append(convergence(name, cells, strength))
+            run.tables.append(convergence(name, which, cells, strength))
+            if which == "ours":
+                run.found(f"{name}: {GAIN_LEARNED}", ours=gain_at(cells["learned"]["at"][-1]))
         note_configuration(run, name, strength)
     run.note("seconds: CPU seconds of a core, without the preparation, which a cache keeps (lacuna report)")
 

@@ -16,7 +16,7 @@ POINTER = "/analysis/mapping"
 
 # Sampling methods, which stay unbiased by either: their error at equal time.
 SAMPLED = {
-    "guide skeleton, as published": {"type": "path", "max_depth": 6, "guide": as_published(8)},
+    "guide skeleton, as published": {"type": "path", "max_depth": 6, "as": "published", "guide": as_published(8)},
     "guide skeleton, ours": {"type": "path", "max_depth": 6, "guide": OURS},
     "guide learned_skeleton": {"type": "path", "max_depth": 6, "guide": {"type": "learned_skeleton"}},
     "connections skeleton": bdpt({"type": "skeleton"}),

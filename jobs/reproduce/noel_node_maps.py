@@ -5,7 +5,7 @@ from harness.entry import Entries
 from harness.measured import geometric_mean_of, mean_of, median_of
 from harness.run import Table
 from harness.verdict import at_least, at_most, beside
-from noel_shadows import RADII, SEEDS, VIEWS, job, picture_name, shadow_report, sum_seconds
+from noel_shadows import NODES, SEEDS, VIEWS, job, picture_name, shadow_report, sum_seconds
 
 ENTRIES = Entries()
 MANY_NODES = ("lights lie at one node for every 7 or 8 of them, and to look a point up in a node's map costs as much as several "
@@ -41,7 +41,7 @@ def table_4(run):
         """The ratios, by whose radii of nodes; and a row of the table for each."""
         view = VIEW.get(name, name)
         plain = [sum_seconds(run, view, "none", paths, seed, **size) for seed in range(SEEDS)]
-        for which, radius in RADII.items():
+        for which, radius in NODES.items():
             shadowed = [sum_seconds(run, view, "node_maps", paths, seed, radius, **size)[0] for seed in range(SEEDS)]
             ratio = median_of([a / b for a, (b, _) in zip(shadowed, plain)])
             run.found(quantity(name, paths), **{which: ratio})
@@ -78,8 +78,8 @@ def fig_60(run):
     for name in TABLE_4:
         view = VIEW.get(name, name)
         found = {}
-        for key, how, radius in (("exact", "exact", None), ("none", "none", None), ("published", "node_maps", RADII["published"]),
-                                 ("ours", "node_maps", RADII["ours"])):
+        for key, how, radius in (("exact", "exact", None), ("none", "none", None), ("published", "node_maps", NODES["published"]),
+                                 ("ours", "node_maps", NODES["ours"])):
             pictures = [(view, how, paths, 3, seed, radius) for seed in range(seeds)]
             for picture in pictures:
                 shadow_report(run, *picture, **size)
@@ -87,7 +87,7 @@ def fig_60(run):
                           for p in pictures]
             if key != "ours":
                 run.show(f"{name}, {key}", run.place(picture_name(*pictures[0], **size)))
-        for which in RADII:
+        for which in NODES:
             run.found(f"{name}: squared error of node maps / of no shadows", **{which: geometric_mean_of(
                 [a["display_mse"] / b["display_mse"] for a, b in zip(found[which], found["none"])])})
             if name in LIGHT:

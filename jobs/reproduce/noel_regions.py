@@ -7,7 +7,7 @@ import math
 from harness import child, layers
 from harness.entry import Entries
 from harness.measured import exact, geometric_mean_of, mean_of
-from harness.run import KINDS, Table, cell_with
+from harness.run import AS, KINDS, Table, cell_with
 from harness.verdict import at_least, at_most, beside
 from noel_guides import frames, note_frames
 
@@ -19,21 +19,24 @@ GRID = 118  # voxels along door's longest side: (72, 118, 28), that of Figs 85 a
 SLIT = [119.5, 60, -65]  # between the edge of the door and its frame
 BEFORE = [128, 60, -50]  # in the room, in the region before the door
 
-# The thesis: the next portal, half of the rays, nothing between regions, and its thresholds. `one`: faces that all points
-# share (SIS3 and 4, FIS3 and 4), which need no thresholds.
+# The thesis: the next portal to the light's region, half of the rays, nothing between regions, its thresholds, and a path
+# from each face. `one`: faces that all points share (SIS3 and 4, FIS3 and 4), which need no thresholds.
+NO_THRESHOLDS = {"least_distance": 0, "least_cosine": 0}
 FACES = {
-    "portals": {"published": {"type": "portals", "portal": "next", "probability": 0.5, "mixing": 0},
-                "ours": {"type": "portals"},
-                "one": {"type": "portals", "probability": 0.5, "mixing": 0, "through": SLIT}},
-    "face_irradiance": {"published": {"type": "face_irradiance", "probability": 0.5, "mixing": 0,
-                                      "least_distance": 0.01, "least_cosine": 0.5},
-                        "ours": {"type": "face_irradiance"},
-                        "one": {"type": "face_irradiance", "probability": 0.5, "mixing": 0, "through": BEFORE}},
+    "portals": {"published": {"type": "portals", "as": "published"}, "ours": {"type": "portals"},
+                "one": {"type": "portals", "as": "published", "through": SLIT}},
+    "face_irradiance": {"published": {"type": "face_irradiance", "as": "published"}, "ours": {"type": "face_irradiance"},
+                        "one": {"type": "face_irradiance", "as": "published", **NO_THRESHOLDS, "through": BEFORE}},
 }
 
 
 def alone(guide):
     return {**guide, "guide_only": True}
+
+
+def mixing(guide):
+    """As published but for the borders of regions: mixed over 4 voxels, the default, in place of thresholds."""
+    return {**guide, "mixing": 4, **(NO_THRESHOLDS if guide["type"] == "face_irradiance" else {})}
 
 
 def door_job(full):
@@ -44,13 +47,14 @@ def door_job(full):
 QUICK = {"portals": 32, "face_irradiance": 16}  # iterations; with thresholds one takes eleven times that of BSDF sampling
 
 
-def region_sweep(full, name):
+def region_sweep(full, name, which="published"):
     faces = FACES[name]
+    published = [faces["published"], faces["one"], alone(faces["published"]), alone(faces["one"])]
     return {
         "label": f"{name} at equal iterations",
-        "job": {**door_job(full), "reference": "auto", "budget": {"iterations": 4096 if full else QUICK[name]},
+        "job": {**AS[which], **door_job(full), "reference": "auto", "budget": {"iterations": 4096 if full else QUICK[name]},
                 "reference_iterations": 4000 if full else 160},
-        "axes": {GUIDE: [BSDF, *faces.values(), alone(faces["published"]), alone(faces["one"])]},
+        "axes": {GUIDE: [BSDF, *(published if which == "published" else [faces["ours"]])]},
         "seeds": 5 if full else 3,
     }
 
@@ -62,8 +66,7 @@ def light(folder):
 def measure_regions(run, name, title, claims):
     """Errors after as many iterations, with the thesis' settings and ours, and through faces that all points share; and what
     is lost where the guide draws alone. `claims`: the quantities of these four."""
-    answers = run.answers(region_sweep(run.full, name))
-    faces, seeds = FACES[name], range(answers["seeds"])
+    faces, rows, gains = FACES[name], [], {}
 
     def told(guide):
         return [run.report(cell_with(answers, guide=guide), seed) for seed in seeds]
@@ -77,13 +80,14 @@ def measure_regions(run, name, title, claims):
     def kept(guide):
         return geometric_mean_of([light(a) / light(b) for a, b in zip(pictures(alone(guide)), pictures(BSDF))])
 
-    rows, gains = [], {}
     for which, guide in faces.items():
+        answers = run.answers(region_sweep(run.full, name, "ours" if which == "ours" else "published"))
+        seeds = range(answers["seeds"])
         found = [gain(guide, lambda r, m=metric: r["errors"][m]) for metric in ("mae", "rmse", "relmse")]
         gains[which] = found[0]
         rows.append((which, *map(str, found), f"{1 / gain(guide, lambda r: r['seconds']['render_cpu']).value:.3g}"))
     run.found(claims[0], **{which: gains[which] for which in KINDS})
-    run.found(claims[1], published=kept(faces["published"]))
+    run.found(claims[1], published=kept(faces["published"]))  # the last of the faces is one of the published
     run.found(claims[2], published=gains["one"])
     run.found(claims[3], published=kept(faces["one"]))
     run.tables.append(Table((f"door, {title}", "gain in MAE", "in RMSE", "in relMSE", "time of an iteration"), rows))
@@ -141,17 +145,17 @@ def fig_95(run):
     job = {key: value for key, value in door_job(run.full).items() if key != "integrator"}
     job["budget"] = {"iterations": 4096 if run.full else 32}
 
-    def path(guide):
-        return {"type": "path", "max_depth": 6, "guide": guide}
+    def path(guide, which):
+        return {"type": "path", "max_depth": 6, **AS[which], "guide": guide}
 
     for title, guides in FACES.items():
         for which in KINDS:
             name = f"{title}-{which}"
-            found = frames(run, job, ("bsdf", path(BSDF)), (name, path(guides[which])))
+            found = frames(run, job, (f"bsdf-{which}", path(BSDF, which)), (name, path(guides[which], which)))
             for frame, ratio in zip(("blue", "red"), found):
                 run.found(f"{title}, {frame} frame: variance of BSDF sampling / of the guide", **{which: ratio})
             run.show(name, run.place(f"{name}-0"))
-    run.show("BSDF sampling", run.place("bsdf-0"))
+    run.show("BSDF sampling", run.place("bsdf-ours-0"))
     note_frames(run, job)
 
 
@@ -183,7 +187,7 @@ def leaves_region(ray):
     return ray["entered"] is not None
 
 
-THROUGH_DOOR = {"published": FACES["portals"]["one"], "ours": {**FACES["portals"]["one"], "mixing": 4}}
+THROUGH_DOOR = {"published": FACES["portals"]["one"], "ours": mixing(FACES["portals"]["one"])}
 WAYS = {  # where from, which rays count, the guides
     "from the back room that reach the main room": (BACK_ROOM, leaves_region, THROUGH_DOOR),
     "from the back room that come past the edge of the door": (BACK_ROOM, past_the_door, THROUGH_DOOR),
@@ -320,11 +324,6 @@ def one_surface(folder):
 
 def step_quantity(title):
     return f"{title}: step of variance across borders of regions / within them"
-
-
-def mixing(guide):
-    """As published but for the borders of regions: mixed over 4 voxels, the default, in place of thresholds."""
-    return {name: value for name, value in guide.items() if not name.startswith("least_")} | {"mixing": 4}
 
 
 GUIDES_92 = {"portals": "portals", "face irradiance": "face_irradiance"}

@@ -4,13 +4,13 @@ judged is what its abstract and its first figure claim, on this project's scenes
 
 from harness.entry import Entries
 from harness.measured import error_at, gain_at
-from harness.run import KINDS
+from harness.run import AS, KINDS
 from harness.verdict import at_least, beside
 from noel_connections import (DEPTH, OURS, SCENES, THESIS, bdpt, resampled_cell, resampled_table, resampling_sweep)
 
 ENTRIES = Entries()
-PCBPT = {"published": bdpt({"type": "probabilistic", "light_paths": 1024, "draws": 1, "neighbours": 1, "count_as": 1, "roulette": 0,
-                            "splat_paths": 1}, roulette_depth=DEPTH),
+PCBPT = {"published": bdpt({"type": "probabilistic", "light_paths": 1024, "draws": 1, "neighbours": 1}, roulette_depth=DEPTH,
+                           **AS["published"]),
          "ours": bdpt({"type": "probabilistic"})}
 METHODS = {"published": {**THESIS, "PCBPT": PCBPT["published"]}, "ours": {**OURS, "PCBPT": PCBPT["ours"]}}
 COMPARED = ("door", "sponza")

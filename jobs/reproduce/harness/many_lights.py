@@ -20,12 +20,6 @@ SCENES = {
     "Museum": {"scene": "door/scene.glb", "camera": "corner", "lights": 100_000, "paths": 25_000, "cache": 1900,
                "crop": [200, 200], "stand-in": "door/scene.glb"},
 }
-# The visibilities of Nabata et al. as published: only rays cost time, the point's own variance, a random number for each
-# light, all lights at cache points, and no pixel below 0 (sections 3.1 to 4.2). Of Veach's roulette, what of these it has.
-CHANCE = {"term_cost": 0, "variance": "point", "draws": "bernoulli"}
-PUBLISHED = {"probabilistic": {"type": "probabilistic", **CHANCE, "cache_lights": "all", "clamp_negative": True},
-             "roulette": {"type": "roulette", **CHANCE},
-             "interpolated": {"type": "interpolated", "cache_lights": "all"}}
 TESTS = "visibility_tests"
 
 
@@ -43,8 +37,9 @@ def visibility(name, cache_points=None, **more):
 
 
 def published(name, cache_points=None):
-    """A visibility as published."""
-    return PUBLISHED[name] if cache_points is None else {**PUBLISHED[name], "cache_points": cache_points}
+    """A visibility as published: only rays cost time, the variance that cache points have stored, a random number for each
+    light, all lights at cache points, and no pixel below 0 (sections 3.1 to 4.2). Of Veach's roulette, what of these it has."""
+    return visibility(name, cache_points, **({} if name == "interpolated" else {"as": "published"}))
 
 
 def job(scene, how, full, share=1.0, side=64, **more):

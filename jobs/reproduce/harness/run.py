@@ -33,6 +33,7 @@ class Row:
 
 
 KINDS = ("published", "ours")
+AS = {"published": {"as": "published"}, "ours": {}}  # of a job or a method: whose values its other settings have
 
 
 @dataclasses.dataclass(frozen=True)
