@@ -173,6 +173,7 @@ TEST(NamedFaces, PointsThatNameNoneAreRefused) {
 // guide's probability.
 TEST(PortalPaths, LeadToTheRegionWithTheLight) {
   PortalsGuideSettings settings;
+  settings.mixing = 0;
   const auto of = [&](PortalPaths paths) {
     settings.paths = paths;
     GuidedScene scene(ajar, settings, 0, std::nullopt, 96);  // the door is open at this resolution
