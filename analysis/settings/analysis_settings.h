@@ -50,12 +50,27 @@ struct EnumTable<NodeRadius> {
   }};
 };
 
+/// What makes voxels of empty space a region.
+enum class RegionLabelling { forest, openings };
+
+template <>
+struct EnumTable<RegionLabelling> {
+  static constexpr std::array<EnumValue<RegionLabelling>, 2> values{{
+      {RegionLabelling::forest, "forest",
+       "their trees of the opening forest have a common root (thesis 10.3.3)"},
+      {RegionLabelling::openings, "openings",
+       "they are connected and have the same opening (thesis 10.3.2): many more regions, of which "
+       "some lead nowhere"},
+  }};
+};
+
 /// Shape analysis of the scene, for the integrators that use it.
 struct AnalysisSettings {
   int resolution = 128;
   ThinningDistance distance = ThinningDistance::l1;
   NodeMapping mapping = NodeMapping::geodesic;
   double cluster_alpha = 0.2;
+  RegionLabelling regions = RegionLabelling::forest;
   // The published value differs, see describe():
   NodeRadius node_radius = NodeRadius::corner;
   bool operator==(const AnalysisSettings&) const = default;
@@ -75,6 +90,8 @@ void describe(V& v, AnalysisSettings& s) {
             "visibility cluster (alpha of thesis 7.2.2)",
      .min = 0,
      .max = 1});
+  v("regions", s.regions,
+    {.doc = "what makes voxels of empty space a region; portals lie between regions"});
   v("node_radius", s.node_radius,
     {.doc = "the radius of a skeleton node, used to filter and simplify the skeleton and to make "
             "visibility clusters and gates",

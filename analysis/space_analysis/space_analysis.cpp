@@ -101,7 +101,12 @@ ArtefactKey SpaceAnalysis::clusters_key() {
                      fmt::format("alpha={}", input_.settings.cluster_alpha))
       .from(simplified_key());
 }
-ArtefactKey SpaceAnalysis::regions_key() { return of_domain(regions_.type, regions_version); }
+ArtefactKey SpaceAnalysis::regions_key() {
+  const RegionLabelling by = input_.settings.regions;
+  return of_domain(
+      regions_.type, regions_version,
+      by == RegionLabelling::forest ? std::string() : fmt::format("regions={}", enum_name(by)));
+}
 ArtefactKey SpaceAnalysis::map_key(const char* type, const ArtefactKey& graph) {
   return of_domain(type, map_version, fmt::format("mapping={}", enum_name(input_.settings.mapping)))
       .from(graph);
@@ -221,7 +226,8 @@ const RegionLabels& SpaceAnalysis::regions() {
       const auto distance = chebyshev_distance(domain().voxels, pool_, input_.byte_limit());
       return opening_forest(distance, pool_, input_.byte_limit());
     };
-    return forest_labels(forest(), pool_);
+    return input_.settings.regions == RegionLabelling::forest ? forest_labels(forest(), pool_)
+                                                              : opening_labels(forest(), pool_);
   });
 }
 

@@ -9,7 +9,7 @@
 #include "analysis/geometry/triangle_soup.h"
 #include "analysis/octree/octree.h"
 #include "analysis/regions/borders.h"
-#include "analysis/regions/forest_labels.h"
+#include "analysis/regions/opening_labels.h"
 #include "analysis/regions/portals.h"
 #include "analysis/settings/analysis_settings.h"
 #include "analysis/skeleton/clusters.h"

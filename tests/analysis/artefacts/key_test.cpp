@@ -76,7 +76,8 @@ TEST(SettingsText, NamesEveryFieldExactly) {
   EXPECT_EQ(settings_text(Options{1.0 / 3, false, Rule::fast}),
             "share=0.3333333333333333 pierce=false rule=fast");
   EXPECT_EQ(settings_text(AnalysisSettings{.resolution = 64}),
-            "resolution=64 distance=l1 mapping=geodesic cluster_alpha=0.2 node_radius=corner");
+            "resolution=64 distance=l1 mapping=geodesic cluster_alpha=0.2 regions=forest "
+            "node_radius=corner");
   EXPECT_NO_THROW(ArtefactKey("a", 1, settings_text(Options{})));
 }
 

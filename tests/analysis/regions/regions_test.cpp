@@ -6,6 +6,7 @@
 
 #include "analysis/regions/borders.h"
 #include "analysis/regions/forest_labels.h"
+#include "analysis/regions/opening_labels.h"
 #include "analysis/regions/portals.h"
 #include "analysis/space/distance.h"
 #include "analysis/space/memory_limit.h"
@@ -156,6 +157,34 @@ TEST(ForestLabels, OfTwoRoomsWithADoorAreRooms) {
   ASSERT_EQ(portals.portals.size(), 2u);
   for (const Portal& p : portals.portals) EXPECT_EQ(p.faces(), 1u);
   EXPECT_EQ(portals.of(labels.label(12, 5, 5)).size(), 2u);
+}
+
+/// Def. 10.5 and 10.6 word by word.
+TEST(OpeningLabels, AreTheFlatZonesOfTheOpeningMap) {
+  std::size_t zones = 0, trees = 0;
+  for (const BitGrid3& domain : grids()) {
+    const OpeningForest forest = forest_of(domain);
+    std::vector<std::uint32_t> opening(forest.opening.count(), no_region);
+    for (std::size_t i = 0; i < opening.size(); ++i)
+      if (forest.centre[i] != no_voxel) opening[i] = forest.opening[i];
+    Grid3<std::uint32_t> expected;
+    const std::size_t n = pieces(opening, &expected, domain.size());
+    const RegionLabels labels = opening_labels(forest_of(domain), four_threads());
+    ASSERT_EQ(labels.regions.size(), n);
+    std::vector<std::uint64_t> voxels(n, 0);
+    for (std::size_t i = 0; i < opening.size(); ++i) {
+      ASSERT_EQ(labels.label[i], expected[i]);
+      if (expected[i] != no_region) ++voxels[expected[i]];
+    }
+    for (std::uint32_t r = 0; r < n; ++r) {
+      EXPECT_EQ(labels.regions[r].voxels, voxels[r]);
+      EXPECT_EQ(labels.regions[r].opening, labels.opening[labels.regions[r].root]);
+      EXPECT_EQ(labels.label[labels.regions[r].root], r);
+    }
+    zones += n;
+    trees += forest_labels(forest_of(domain), one_thread()).regions.size();
+  }
+  EXPECT_GT(zones, trees) << "false positives of Fig. 81";
 }
 
 using FaceSet = std::set<std::tuple<std::uint32_t, std::uint8_t>>;

@@ -159,6 +159,13 @@ TEST_F(SpaceAnalysisTest, TellsSettingsApartInTheCache) {
   const auto [wide, same] = built_with([](AnalysisSettings& s) { s.cluster_alpha = 1; });
   EXPECT_EQ(wide, (Types{"visibility_clusters", "visibility_gates"}));
   EXPECT_EQ(same, corner);
+  SpaceInput flat = input({2, 2, 1});
+  flat.settings.regions = RegionLabelling::openings;
+  ArtefactStore first_store = store(), second_store = store();
+  SpaceAnalysis forest(input({2, 2, 1}), first_store, pool_),
+      openings(std::move(flat), second_store, pool_);
+  EXPECT_GE(openings.regions().regions.size(), forest.regions().regions.size());
+  EXPECT_EQ(types(second_store, ArtefactRecord::Origin::built), (Types{"regions"}));
   EXPECT_THROW(built_with([](AnalysisSettings& s) { s.cluster_alpha = 2; }), std::invalid_argument);
 }
 
