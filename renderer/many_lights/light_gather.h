@@ -39,6 +39,7 @@ class LightGather {
   void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums, Counters& counters) {
     states_.clear();
     for (const ShadingPoint& p : points) states_.push_back(visibility_.at(p, context_));
+    visibility_.share(points, std::span(states_), context_);
     if (sampler_ != nullptr) {
       gather_sampled(points, sums, counters);
     } else {

@@ -219,6 +219,20 @@ struct EnumTable<GateFalloff> {
   }};
 };
 
+/// What is tested against the cones of lights through gates.
+enum class GateTests { points, clusters };
+
+template <>
+struct EnumTable<GateTests> {
+  static constexpr std::array<EnumValue<GateTests>, 2> values{{
+      {GateTests::points, "points", "every shading point"},
+      {GateTests::clusters, "clusters",
+       "the bounding spheres of geometry clusters, neighbouring points of similar depth and normal "
+       "in one visibility cluster; then their points against the cones that meet the sphere "
+       "(Noel 2015, 7.3.1 to 7.3.3): the same picture"},
+  }};
+};
+
 /// visibility: gates.
 struct GatesVisibilitySettings {
   static constexpr std::string_view name = "gates";
@@ -229,6 +243,7 @@ struct GatesVisibilitySettings {
 
   GateFalloff falloff = GateFalloff::cosine;
   bool through_gates = true;
+  GateTests tests = GateTests::points;
   bool operator==(const GatesVisibilitySettings&) const = default;
 };
 template <class V>
@@ -237,6 +252,9 @@ void describe(V& v, GatesVisibilitySettings& s) {
   v("through_gates", s.through_gates,
     {.doc = "lights illuminate other clusters through gates; otherwise only their own: faster, but "
             "distant light is missing (Noel 2015, 7.4.1)"});
+  v("tests", s.tests,
+    {.doc = "what is tested against the cones of lights through gates",
+     .published = "\"clusters\""});
 }
 
 /// visibility: node_maps.
@@ -341,6 +359,34 @@ struct EnumTable<ViewTraversal> {
   }};
 };
 
+/// How a texel of a light's map is looked up.
+enum class ViewQueries { fused, descend };
+
+template <>
+struct EnumTable<ViewQueries> {
+  static constexpr std::array<EnumValue<ViewQueries>, 2> values{{
+      {ViewQueries::fused, "fused",
+       "one texel: the maps of all nodes are copied down to the leaves first (Kol et al. 2018, "
+       "3.2.5)"},
+      {ViewQueries::descend, "descend",
+       "a texel of every map between the root and the leaf: no copies, the same picture, but more "
+       "memory and slower queries. The traversal is breadth-first; not for per_view"},
+  }};
+};
+
+/// How a leaf of the scene's octree that is larger than a texel is drawn.
+enum class ViewFilling { texels, mips };
+
+template <>
+struct EnumTable<ViewFilling> {
+  static constexpr std::array<EnumValue<ViewFilling>, 2> values{{
+      {ViewFilling::texels, "texels", "into every texel whose centre it covers"},
+      {ViewFilling::mips, "mips",
+       "into one texel of a coarser level of the map, which is pushed down to the finest level "
+       "afterwards (Kol et al. 2018, 3.2.4): larger shadows"},
+  }};
+};
+
 /// visibility: view_maps.
 struct ViewMapsVisibilitySettings {
   static constexpr std::string_view name = "view_maps";
@@ -356,6 +402,7 @@ struct ViewMapsVisibilitySettings {
   double memory = 4;
   bool cull = true;
   ViewRays rays = ViewRays::single;
+  ViewQueries queries = ViewQueries::fused;
   // These differ from the published values, see their tables:
   double node_texels = 1.75;
   double cover = 0.82;
@@ -363,6 +410,7 @@ struct ViewMapsVisibilitySettings {
   ViewBounds bounds = ViewBounds::boxes;
   ViewSplit split = ViewSplit::facing;
   ViewTraversal traversal = ViewTraversal::depth_first;
+  ViewFilling filling = ViewFilling::texels;
   bool operator==(const ViewMapsVisibilitySettings&) const = default;
 };
 template <class V>
@@ -413,6 +461,10 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
     {.doc = "how lights are divided into nodes and cells. Not for lights that share no maps",
      .published = "\"position\""});
   v("rays", s.rays, {.doc = "how per_view traces its rays"});
+  v("queries", s.queries, {.doc = "how a texel of a light's map is looked up"});
+  v("filling", s.filling,
+    {.doc = "how leaves of the scene's octree larger than a texel are drawn. Not for per_view",
+     .published = "\"mips\""});
   v("traversal", s.traversal,
     {.doc = "order in which pairs of nodes of both octrees are processed. Not for per_view",
      .published = "\"breadth_first\""});

@@ -37,6 +37,8 @@ class ViewMaps {
   /// scale() / distance; 0 if the texel is empty.
   float nearness(std::uint32_t leaf, int texel) const;
   float scale() const { return nearness_.scale; }
+  /// What nearness() returns of a texel of this distance.
+  float coded(float distance) const { return Nearness::decode(nearness_.encode(distance)); }
   /// Allocated memory: that of the largest number of maps so far.
   std::size_t bytes() const { return texels_.size() * sizeof(texels_[0]); }
 

@@ -42,6 +42,8 @@ class ViewQueue {
   }
 
   ManyViewsCounts counts() const { return counts_; }
+  /// The maps before fuse(); call it last.
+  UnfusedMaps take_maps() { return {rendering_, views_, first_, std::move(maps_)}; }
 
   /// Runs until the queue is empty.
   void empty_queue() {
@@ -187,6 +189,16 @@ ManyViewsCounts render_breadth_first(const ViewRendering& rendering, const ViewT
   if (!rendering.scene().empty()) queue.empty_queue();
   queue.fuse(use);
   return queue.counts();
+}
+
+UnfusedMaps render_unfused(const SceneNodes& scene, const ViewTree& views,
+                           const ManyViewsSettings& settings, const ThreadPool& pool,
+                           ManyViewsCounts& counts) {
+  const ViewRendering rendering(scene, views, settings);
+  ViewQueue queue(rendering, views, settings.share, pool);
+  if (!scene.empty() && !views.tree().empty()) queue.empty_queue();
+  counts = queue.counts();
+  return queue.take_maps();
 }
 
 }  // namespace lacuna

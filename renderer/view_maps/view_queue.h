@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/view_maps/many_views.h"
+#include "renderer/view_maps/unfused_maps.h"
 
 namespace lacuna {
 
@@ -14,5 +15,10 @@ namespace lacuna {
 /// there is no memory for the maps.
 ManyViewsCounts render_breadth_first(const ViewRendering& rendering, const ViewTree& views,
                                      bool share, const ThreadPool& pool, const UseMap& use);
+
+/// The same traversal without fusion: the maps of all view nodes. `counts` replaces its counts.
+UnfusedMaps render_unfused(const SceneNodes& scene, const ViewTree& views,
+                           const ManyViewsSettings& settings, const ThreadPool& pool,
+                           ManyViewsCounts& counts);
 
 }  // namespace lacuna

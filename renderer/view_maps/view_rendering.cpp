@@ -12,6 +12,7 @@ ManyViewsCounts& ManyViewsCounts::operator+=(const ManyViewsCounts& o) {
   shared += o.shared;
   sharing += o.sharing;
   large += o.large;
+  filled += o.filled;
   for (std::size_t i = 0; i < generations.size(); ++i) generations[i] += o.generations[i];
   queue_bytes = std::max(queue_bytes, o.queue_bytes);
   unfused_bytes = std::max(unfused_bytes, o.unfused_bytes);
@@ -196,7 +197,7 @@ inline void ViewRendering::render_level(const Visit& v, int level, const NodeLis
   counts.culled += out_of_sight;
   counts.splats += same_texel;
   if (v.leaf && scene_leaves) {
-    fill(v, rest, before, depths);
+    fill(v, rest, before, depths, scratch, counts);
     rest.resize(before);
     counts.large += left;
     counts.shared += v.several ? left : 0;
@@ -230,11 +231,13 @@ void ViewRendering::render_once(std::uint32_t view, int level, const NodeList& n
   counts.sharing += (counts.splats - splats) * views_.node(view).views;
 }
 
-/// For leaves from index `first`, fills all texels whose centre the sphere covers (3.2.4); as
-/// published, also the texel of its centre. Skips a leaf whose cube contains the view: it would
-/// occlude half of all directions, and the position of its surface in the cube is unknown.
+/// For leaves from index `first`, fills all texels whose centre the sphere covers; with cover 0,
+/// also the texel of its centre. With `mips`, as published (3.2.4): by MipSplats. Skips a leaf
+/// whose cube contains the view: it would occlude half of all directions, and the position of its
+/// surface in the cube is unknown.
 void ViewRendering::fill(const Visit& v, const NodeList& nodes, std::size_t first,
-                         std::span<float> depths) const {
+                         std::span<float> depths, Scratch& scratch, ManyViewsCounts& counts) const {
+  if (settings_.mips && !scratch.mips) scratch.mips.emplace(map_);
   const float whole = scene_.radius(scene_.levels());
   const float radius = settings_.cover > 0 ? settings_.cover * whole : whole;
   const float half_a_leaf = scene_.half_side(scene_.levels());
@@ -242,6 +245,12 @@ void ViewRendering::fill(const Visit& v, const NodeList& nodes, std::size_t firs
     const V3f d = V3f(nodes.x[i], nodes.y[i], nodes.z[i]) - v.centre;
     if (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) < half_a_leaf) continue;
     const float distance = d.length();
+    if (settings_.mips) {
+      const float width = 2 * radius / distance * map_.stretch(std::abs(d.x) / distance);
+      scratch.mips->splat(map_.coord(d), width, distance, depths);
+      ++counts.filled;
+      continue;
+    }
     if (settings_.cover == 0) {
       float& depth = depths[static_cast<std::size_t>(map_.texel(d))];
       depth = std::min(depth, distance);
@@ -250,9 +259,12 @@ void ViewRendering::fill(const Visit& v, const NodeList& nodes, std::size_t firs
     const float cosine = std::sqrt(std::max(0.0F, 1 - sine * sine));
     const V3f w = d / distance;
     for (int half = 0; half < 2; ++half) {
-      fill_cap(half, map_.cap(half, w, cosine, sine), w, cosine, distance, depths);
+      const Paraboloid::Rectangle r = map_.cap(half, w, cosine, sine);
+      fill_cap(half, r, w, cosine, distance, depths);
+      counts.filled += static_cast<std::uint64_t>((r.v_end - r.v_first) * (r.u_end - r.u_first));
     }
   }
+  if (settings_.mips) counts.filled += scratch.mips->push(depths);
 }
 
 /// Processes eight texels at a time, including some beside the rectangle, which lie outside the
@@ -270,6 +282,12 @@ inline void ViewRendering::fill_cap(int half, const Paraboloid::Rectangle& r, co
       select(covered, min(depth, Float8(distance)), depth).store_unaligned(&depths[at]);
     }
   }
+}
+
+std::vector<V3f> ViewRendering::directions() const {
+  std::vector<V3f> all(texels());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = {x_[i], y_[i], z_[i]};
+  return all;
 }
 
 void ViewRendering::hand_down(std::uint32_t parent, std::span<const float> from,

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
-#include "renderer/view_maps/paraboloid.h"
+#include "renderer/view_maps/mip_splats.h"
 #include "renderer/view_maps/scene_nodes.h"
 #include "renderer/view_maps/view_tree.h"
 
@@ -16,6 +17,7 @@ struct ManyViewsCounts {
   std::uint64_t splats = 0;   ///< rendered scene nodes
   std::uint64_t large = 0;    ///< splats of leaves that may cover several texels
   std::uint64_t shared = 0;   ///< of `large`, those in maps of several views
+  std::uint64_t filled = 0;   ///< texels that were looked at to draw `large`
   std::uint64_t sharing = 0;  ///< single views that share a splat, summed over splats
   /// Number of pairs by the number of preceding subdivisions.
   std::array<std::uint64_t, 2 * Octree::most_levels + 1> generations{};
@@ -46,6 +48,7 @@ struct ManyViewsSettings {
   /// Culls a scene node by the box of the leaves below it and the box of the views; false: by the
   /// spheres of both nodes, as in the paper.
   bool boxes = true;
+  bool mips = false;           ///< draw large leaves into coarser levels of the maps: MipSplats
   bool breadth_first = false;  ///< use a queue, as in the paper; the same maps
 };
 
@@ -61,6 +64,8 @@ class ViewRendering {
   ViewRendering(const SceneNodes& scene, const ViewTree& views, const ManyViewsSettings& settings);
 
   const SceneNodes& scene() const { return scene_; }
+  /// The unit directions of a map's texels.
+  std::vector<V3f> directions() const;
   /// Length of a map in floats: its texels, rounded up to whole vectors of eight, and one more
   /// vector.
   std::size_t map_floats() const { return x_.size(); }
@@ -78,6 +83,7 @@ class ViewRendering {
     std::array<NodeList, 2> fresh;      ///< children of these, alternating between levels
     std::vector<std::uint32_t> texels;  ///< splats of a level
     std::vector<float> distances;       ///< of the splats
+    std::optional<MipSplats> mips;      ///< of one map
   };
   /// Renders the scene nodes `waiting`, and all nodes below them, into the map of a view node,
   /// which is a fork(). Replaces `later` by the nodes that the views below must decide.
@@ -102,8 +108,8 @@ class ViewRendering {
                   Float8 length2) const;
   void render_level(const Visit& v, int level, const NodeList& nodes, std::span<float> depths,
                     NodeList& later, Scratch& scratch, ManyViewsCounts& counts) const;
-  void fill(const Visit& v, const NodeList& nodes, std::size_t first,
-            std::span<float> depths) const;
+  void fill(const Visit& v, const NodeList& nodes, std::size_t first, std::span<float> depths,
+            Scratch& scratch, ManyViewsCounts& counts) const;
   void fill_cap(int half, const Paraboloid::Rectangle& r, const V3f& w, float cosine,
                 float distance, std::span<float> depths) const;
 

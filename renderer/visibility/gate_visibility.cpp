@@ -60,6 +60,44 @@ Float8 GateVisibility::through(const Gate& gate, const Float8x3& to_gate, const 
   return keep_where(crosses, 1.0F);
 }
 
+void GateVisibility::share(std::span<const ShadingPoint> points, std::span<At> states,
+                           const IterationContext& context) const {
+  if (settings_.tests == GateTests::points || !settings_.through_gates) return;
+  std::vector<std::uint32_t> cluster, geometry;
+  for (const At& at : states) cluster.push_back(at.cluster);
+  const auto shared =
+      std::make_shared<GeometryClusters>(points, cluster, context.camera, counts_, geometry);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    states[i].shared = shared;
+    states[i].geometry = geometry[i];
+  }
+}
+
+const std::vector<GeometryCluster::Listed>& GateVisibility::listed(const At& at,
+                                                                   std::size_t block) const {
+  GeometryCluster& points = at.shared->clusters[at.geometry];
+  if (points.block == block) return points.list;
+  points.block = block;
+  points.list.clear();
+  const Positions lights(*lights_, block);
+  const std::uint32_t cluster = lights_->group(block);
+  for (std::uint32_t g = first_[cluster]; g < first_[cluster + 1]; ++g) {
+    const V3f c = gates_[g].centre, x = points.centre;
+    std::uint64_t meets = 0;
+    for (int k = 0; k < Lanes::groups; ++k) {
+      const Float8x3 y{lights.x.eight(k), lights.y.eight(k), lights.z.eight(k)};
+      const Float8x3 to_gate{c.x - y.x, c.y - y.y, c.z - y.z};
+      const Float8x3 to_points{x.x - y.x, x.y - y.y, x.z - y.z};
+      const unsigned bits = cone_meets(to_gate, gates_[g].radius2, to_points, points.radius);
+      meets |= std::uint64_t{bits} << (8 * k);
+    }
+    meets &= lights_->mask(block);
+    at.shared->sphere_tests += static_cast<std::uint64_t>(lights_->count(block));
+    if (meets != 0) points.list.push_back({g, meets});
+  }
+  return points.list;
+}
+
 void GateVisibility::decide(const At& at, std::size_t block, const Terms& terms,
                             VisibilityEstimate& d) const {
   const std::uint32_t cluster = lights_->group(block);
@@ -75,17 +113,42 @@ void GateVisibility::decide(const At& at, std::size_t block, const Terms& terms,
     const Float8x3 to_point{at.x.x - y.x, at.x.y - y.y, at.x.z - y.z};
     const Float8x3 w = to_point * (1 / sqrt(length2(to_point)));
     Float8 v = 0.0F;
-    for (std::uint32_t g = first_[cluster]; g < first_[cluster + 1]; ++g) {
+    const auto pass = [&](std::uint32_t g) {
       const V3f c = gates_[g].centre;
       v = max(v, through(gates_[g], {c.x - y.x, c.y - y.y, c.z - y.z}, w));
+    };
+    if (at.shared) {
+      for (const GeometryCluster::Listed& l : listed(at, block)) {
+        if ((l.lights >> (8 * k) & 0xff) != 0) pass(l.gate);
+      }
+    } else {
+      for (std::uint32_t g = first_[cluster]; g < first_[cluster + 1]; ++g) pass(g);
     }
     d.untested.set(k, v);
   }
 }
 
+bool GateVisibility::lists_none(const At& at, std::size_t block) const {
+  const std::uint32_t cluster = lights_->group(block);
+  const std::vector<GeometryCluster::Listed>& list = listed(at, block);
+  for (const GeometryCluster::Listed& l : list) {
+    at.shared->point_tests += static_cast<std::uint64_t>(std::popcount(l.lights));
+  }
+  at.shared->all_tests += std::uint64_t{first_[cluster + 1] - first_[cluster]} *
+                          static_cast<std::uint64_t>(lights_->count(block));
+  return list.empty();
+}
+
 std::vector<std::pair<std::string, double>> GateVisibility::statistics() const {
-  return {{"visibility_clusters", static_cast<double>(clusters_)},
-          {"visibility_gates", static_cast<double>(gates_.size()) / 2}};
+  std::vector<std::pair<std::string, double>> stats{
+      {"visibility_clusters", static_cast<double>(clusters_)},
+      {"visibility_gates", static_cast<double>(gates_.size()) / 2}};
+  if (settings_.tests == GateTests::points) return stats;
+  stats.emplace_back("geometry_clusters", static_cast<double>(counts_.clusters));
+  stats.emplace_back("gate_tests_of_clusters", static_cast<double>(counts_.spheres));
+  stats.emplace_back("gate_tests_of_points", static_cast<double>(counts_.points));
+  stats.emplace_back("gate_tests_without_clusters", static_cast<double>(counts_.all));
+  return stats;
 }
 
 }  // namespace lacuna

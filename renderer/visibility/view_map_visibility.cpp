@@ -70,7 +70,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   passes.begin("view map memory", memory_seconds_);
   leaves_ += views_->leaf_count();
   ++passes_;
-  maps_->resize(views_->leaf_count());
+  if (!descends()) maps_->resize(views_->leaf_count());
   passes.begin("view maps", map_seconds_);
   Counters counters;
   const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
@@ -82,24 +82,37 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
     counters.rays += trace_views(pass.context.scene.rays(), *views_, texels_,
                                  settings_.rays == ViewRays::packets, pool, take);
   } else {
-    const ManyViewsCounts counts =
-        render_views(*scene_, *views_,
-                     {.map_size = settings_.map_size,
-                      .node_texels = static_cast<float>(settings_.node_texels),
-                      .cover = static_cast<float>(settings_.cover),
-                      .share = settings_.method == ViewMapMethod::megaviews,
-                      .merge = settings_.method != ViewMapMethod::per_view_splats,
-                      .cull = settings_.cull,
-                      .boxes = settings_.bounds == ViewBounds::boxes,
-                      .breadth_first = settings_.traversal == ViewTraversal::breadth_first},
-                     pool, take);
+    const ManyViewsSettings settings{
+        .map_size = settings_.map_size,
+        .node_texels = static_cast<float>(settings_.node_texels),
+        .cover = static_cast<float>(settings_.cover),
+        .share = settings_.method == ViewMapMethod::megaviews,
+        .merge = settings_.method != ViewMapMethod::per_view_splats,
+        .cull = settings_.cull,
+        .boxes = settings_.bounds == ViewBounds::boxes,
+        .mips = settings_.filling == ViewFilling::mips,
+        .breadth_first = settings_.traversal == ViewTraversal::breadth_first};
+    ManyViewsCounts counts;
+    unfused_.reset();
+    if (descends()) {
+      unfused_.emplace(render_unfused(*scene_, *views_, settings, pool, counts));
+    } else {
+      counts = render_views(*scene_, *views_, settings, pool, take);
+    }
     queue_peak_ = std::max(queue_peak_, counts.queue_peak());
     counts_ += counts;
   }
   return counters;
 }
 
-bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
+float ViewMapVisibility::nearness(std::uint32_t leaf, int texel, Queries& queries) const {
+  ++queries.asked;
+  if (unfused_) return maps_->coded(unfused_->distance(leaf, texel, queries.read));
+  ++queries.read;
+  return maps_->nearness(leaf, texel);
+}
+
+bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at, Queries& queries) const {
   const V3f d = at.x - views_->node(views_->first_leaf() + leaf).centre;
   const bool rays = settings_.method == ViewMapMethod::per_view;
   // The centres of the surface's leaves lie up to a radius in front of it.
@@ -112,7 +125,7 @@ bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
   // width of the largest node rendered as one splat, count as lying on the plane.
   const double width = rays ? 1 : std::max(1.0, settings_.node_texels);
   const float inverse = -t.direction.dot(at.n) * static_cast<float>(1 + width / settings_.map_size);
-  return maps_->scale() * inverse >= maps_->nearness(leaf, texel) * h;
+  return maps_->scale() * inverse >= nearness(leaf, texel, queries) * h;
 }
 
 void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& terms,
@@ -120,10 +133,14 @@ void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& ter
   if (lights_->group(block) == no_group) return test_all(terms, d);
   d.tests = 0;
   d.untested.v.fill(0);
+  Queries queries;
   for_each_bit(terms.lit, [&](int i) {
     const std::uint32_t leaf = views_->leaf_of(first_[block] + static_cast<std::size_t>(i));
-    d.untested[i] = sees(leaf, at) ? 1.0F : 0.0F;
+    d.untested[i] = sees(leaf, at, queries) ? 1.0F : 0.0F;
   });
+  if (!unfused_) return;
+  asked_.fetch_add(queries.asked, std::memory_order_relaxed);
+  read_.fetch_add(queries.read, std::memory_order_relaxed);
 }
 
 std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() const {
@@ -144,12 +161,17 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
       {"view_splats", number(counts_.splats)},
       {"view_splats_large", number(counts_.large)},
       {"view_splats_large_shared", number(counts_.shared)},
+      {"view_texels_filled", number(counts_.filled)},
       {"views_sharing_a_splat", number(counts_.sharing) / splats},
       {"view_queue_peak_pairs", number(queue_peak_)}};
   if (counts_.queue_bytes > 0) {
     stats.emplace_back("view_queue_bytes", number(counts_.queue_bytes));
     stats.emplace_back("view_unfused_bytes", number(counts_.unfused_bytes));
     stats.emplace_back("view_fusion_cpu_seconds", counts_.fusion_seconds);
+  }
+  if (descends()) {
+    stats.emplace_back("view_queries", number(asked_.load()));
+    stats.emplace_back("view_texels_queried", number(read_.load()));
   }
   return stats;
 }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <optional>
 
 #include "analysis/octree/surface_octree.h"
 #include "renderer/settings/visibility_settings.h"
 #include "renderer/view_maps/view_maps.h"
+#include "renderer/view_maps/view_queue.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
@@ -32,7 +35,15 @@ class ViewMapVisibility : public VisibilityBase {
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
-  bool sees(std::uint32_t leaf, const At& at) const;
+  /// Looked-up texels, and the texels that were read for them.
+  struct Queries {
+    std::uint64_t asked = 0, read = 0;
+  };
+  bool descends() const {
+    return settings_.queries == ViewQueries::descend && settings_.method != ViewMapMethod::per_view;
+  }
+  float nearness(std::uint32_t leaf, int texel, Queries& queries) const;
+  bool sees(std::uint32_t leaf, const At& at, Queries& queries) const;
 
   ViewMapsVisibilitySettings settings_;
   OctreeCube cube_;                    // of both octrees
@@ -40,6 +51,8 @@ class ViewMapVisibility : public VisibilityBase {
   float cell_ = 0;                     // radius of the scene's leaves
   std::unique_ptr<ViewTree> views_;
   std::unique_ptr<ViewMaps> maps_;
+  std::optional<UnfusedMaps> unfused_;  // in place of maps_, if queries descend
+  mutable std::atomic<std::uint64_t> asked_ = 0, read_ = 0;
   std::vector<MapTexel> texels_;      // of a map
   std::vector<std::uint32_t> first_;  // of each block of lights: its first view
   const VplSet* lights_ = nullptr;

@@ -12,6 +12,7 @@ namespace lacuna {
 ///   d.untested: added to the estimate of every light; d.gain: weight of an unoccluded shadow ray.
 ///   The estimate of a light is untested + (tested ? gain V : 0); its expectation must be V for an
 ///   unbiased strategy.
+/// - share(points, states, context): data that the points of a tile have in common, once per tile.
 /// - hides(): whether no light of a block illuminates the point.
 /// - group(), passes(), begin(): the order of the lights, their division into passes, and the
 ///   preparation of each pass.
@@ -26,6 +27,7 @@ concept Visibility = Strategy<V> &&
              const IterationContext& context, VisibilityEstimate& d, typename V::At& at,
              const VplGeometry& light, const VplSet& lights, const LightPass& pass) {
   { k.at(point, context) } -> std::same_as<typename V::At>;
+  k.share(std::span(&point, 1), std::span(&at, 1), context);
   k.decide(at, std::size_t{}, terms, d);
   { k.hides(at, std::size_t{}) } -> std::same_as<bool>;
   { k.group(light) } -> std::same_as<std::uint32_t>;

@@ -14,6 +14,9 @@ struct VisibilityBase : StrategyBase {
   static std::vector<BlockRange> passes(const VplSet&) { return {{}}; }
   /// Called for each pass when the lights of an iteration are complete.
   static Counters begin(const LightPass&) { return {}; }
+  /// Called with the points that are gathered together, and their states.
+  template <class At>
+  static void share(std::span<const ShadingPoint>, std::span<At>, const IterationContext&) {}
   /// Whether no light of `block` illuminates the point.
   template <class At>
   static bool hides(At&, std::size_t /*block*/) {

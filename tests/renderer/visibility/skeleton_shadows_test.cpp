@@ -122,6 +122,23 @@ TEST_P(SkeletonShadows, OfGatesAreClustersAndCones) {
   }
 }
 
+TEST_P(SkeletonShadows, OfGatesAreTheSameByGeometryClusters) {
+  LitScene lit(GetParam(), 200, 2);
+  GateVisibility points({}), clusters({.tests = GateTests::clusters});
+  lit.prepare(points);
+  lit.prepare(clusters);
+  for (const std::uint32_t first : {0U, 400U, 900U}) {
+    lit.with_points(first, [&](std::span<const ShadingPoint> shaded) {
+      EXPECT_EQ(gathered(lit, lit.context(1), points, shaded),
+                gathered(lit, lit.context(1), clusters, shaded));
+    });
+  }
+  const auto told = clusters.statistics();
+  ASSERT_EQ(told.size(), 6U);
+  EXPECT_GT(told[2].second, 0) << told[2].first;
+  EXPECT_LE(told[4].second, told[5].second) << "tests of points";
+}
+
 TEST_P(SkeletonShadows, WithoutGatesAreClustersAlone) {
   LitScene lit(GetParam(), 200, 2);
   GateVisibility visibility({.through_gates = false});
@@ -143,6 +160,31 @@ INSTANTIATE_TEST_SUITE_P(All, SkeletonShadows,
                                          test::PathScene{"many_lights"},
                                          test::PathScene{"open", true}),
                          [](const auto& s) { return s.param.name; });
+
+// A cone and a sphere that do not meet have no common point; most that have none do not meet.
+TEST(GeometryClusters, MissNoPointInACone) {
+  Rng rng(9, 0, 0, Rng::Purpose::test);
+  const auto random = [&] { return V3f(rng.next(), rng.next(), rng.next()) * 2.0F - V3f(1.0F); };
+  int within = 0, missed = 0, meets = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const V3f gate = random(), axis = random().normalized(), centre = random() * 2.0F;
+    const float gate_radius = 0.6F * rng.next(), radius = 0.5F * rng.next();
+    const auto all = [](const V3f& v) { return Float8x3{v.x, v.y, v.z}; };
+    const bool said = cone_meets(all(gate), gate_radius * gate_radius, all(centre), radius) == 0xff;
+    meets += said;
+    bool inside = false;
+    for (int k = 0; k < 50; ++k) {
+      const V3f w = centre + random().normalized() * (radius * rng.next());
+      const float t = gate.dot(axis) / w.dot(axis);
+      inside = inside || (t > 0 && (w * t - gate).length() <= gate_radius);
+    }
+    within += inside;
+    missed += inside && !said;
+  }
+  EXPECT_EQ(missed, 0);
+  EXPECT_GT(within, 200);
+  EXPECT_LT(meets, 3000);
+}
 
 // Groups change the order of the lights, and nothing else.
 TEST(VplSet, InGroupsGiveTheSame) {

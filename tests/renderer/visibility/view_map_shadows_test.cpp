@@ -1,6 +1,9 @@
 // What view maps say of lights and points, against rays.
 
 #include "renderer/visibility/view_map_visibility.h"
+
+#include <map>
+
 #include "tests/renderer/many_lights/lit_scene.h"
 #include "tests/statistics.h"
 
@@ -133,6 +136,23 @@ TEST(ViewMapBias, LosesLittleLightInAnEmptyBox) {
   Moments box;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) box.add(-bias("furnace", seed));
   expect_below(box, 0.25, "light lost in an empty box");
+}
+
+// Queries without fusion read more texels, and say the same.
+TEST(ViewMapQueries, SayTheSameWithoutFusion) {
+  LitScene lit({"ajar"}, 300, 2);
+  ViewMapVisibility fused({.levels = 6}),
+      descending({.levels = 6, .queries = ViewQueries::descend});
+  lit.prepare(fused);
+  lit.prepare(descending);
+  lit.with_points(500, [&](std::span<const ShadingPoint> points) {
+    EXPECT_EQ(test::gathered(lit, lit.context(1), fused, points),
+              test::gathered(lit, lit.context(1), descending, points));
+  });
+  std::map<std::string, double> stats;
+  for (const auto& [name, value] : descending.statistics()) stats[name] = value;
+  EXPECT_GT(stats["view_queries"], 1000);
+  EXPECT_GT(stats["view_texels_queried"], 2 * stats["view_queries"]);
 }
 
 // Rays of one origin in packets hit what they hit one by one.
