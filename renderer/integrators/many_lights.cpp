@@ -29,9 +29,12 @@ class ManyLights final : public Integrator {
         visibility_(visibility) {}
 
   SceneNeeds needs() const override {
-    return {.materials = true, .emission = true, .space = visibility_.needs_space()};
+    return {.materials = true, .emission = true, .space = visibility_.needs_space() || by_cubes()};
   }
-  void prepare(const PrepareContext& context) override { visibility_.prepare(context); }
+  void prepare(const PrepareContext& context) override {
+    visibility_.prepare(context);
+    if (by_cubes()) scene_cubes_ = context.space.octree(CubeCulling::levels);
+  }
   void save(ByteWriter& out) const override { visibility_.save(out); }
   void load(ByteReader& in) override { visibility_.load(in); }
 
@@ -50,7 +53,11 @@ class ManyLights final : public Integrator {
   std::vector<std::pair<std::string, double>> statistics() const override {
     auto stats = visibility_.statistics();
     stats.emplace_back("virtual_lights", lights_);
-    if (random()) stats.emplace_back("lights_culled", culled_);
+    if (random()) {
+      stats.emplace_back("lights_culled", culled_);
+      stats.emplace_back("culling_tests", culling_tests_);
+      if (by_cubes()) stats.emplace_back("light_leaves_culled", leaves_culled_);
+    }
     stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
     stats.emplace_back("visibility_cpu_seconds", seconds_.visibility);
     stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
@@ -70,25 +77,29 @@ class ManyLights final : public Integrator {
     const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
     std::optional<VplSampler> sampler;
     std::optional<LightFilter> filter;
-    if (random()) sampler.emplace(terms, *random());
+    std::optional<CubeCulling> cubes;
+    if (by_cubes()) {
+      cubes.emplace(lights, *scene_cubes_, static_cast<float>(random()->cutoff), context.pool);
+      leaves_culled_ = cubes->culled();
+    }
+    if (random()) sampler.emplace(terms, *random(), cubes ? &*cubes : nullptr);
     if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
     for (const BlockRange& range : visibility_.passes(lights)) {
       passes.begin("visibility", seconds_.visibility);
       if (lights.size() > 0) {
-        counters += visibility_.begin(
-            {.context = context,
-             .terms = terms,
-             .max_depth = settings_.max_depth,
-             .least_alpha = least_alpha_,
-             .lights = range,
-             .sampled = random() ? std::size_t(random()->lights) : ~std::size_t{0}});
+        counters += visibility_.begin({.context = context,
+                                       .terms = terms,
+                                       .max_depth = settings_.max_depth,
+                                       .least_alpha = least_alpha_,
+                                       .lights = range,
+                                       .sampled = sampled(lights.size())});
       }
       passes.begin("eye paths", seconds_.eye);
       counters +=
           gather(context,
                  {terms, sampler ? &*sampler : nullptr, filter ? &*filter : nullptr, range}, image);
     }
-    if (sampler) culled_ = sampler->culled();
+    if (sampler) culled_ = sampler->culled(), culling_tests_ = double(sampler->tests());
     if (filter) counters += add_filtered(context, *filter, image);
     return counters;
   }
@@ -120,6 +131,17 @@ class ManyLights final : public Integrator {
   /// The settings of light sampling; null: all lights are gathered.
   const RandomLightsSettings* random() const {
     return std::get_if<RandomLightsSettings>(&settings_.gather);
+  }
+
+  /// Whether octrees of the scene and of the lights cull lights.
+  bool by_cubes() const {
+    return random() && random()->cull && random()->cull_for == CullFor::cubes;
+  }
+  /// Largest number of lights that a shading point gathers, of `lights`.
+  std::size_t sampled(std::size_t lights) const {
+    if (!random()) return ~std::size_t{0};
+    const auto step = static_cast<std::size_t>(random()->interleave * random()->interleave);
+    return step > 0 ? (lights + step - 1) / step : static_cast<std::size_t>(random()->lights);
   }
 
   struct Part;
@@ -179,7 +201,8 @@ class ManyLights final : public Integrator {
   float least_alpha_;
   V visibility_;
   int tests_layer_ = -1, negative_layer_ = -1;
-  double lights_ = 0, culled_ = 0;
+  std::shared_ptr<const Octree> scene_cubes_;  // null: not by_cubes()
+  double lights_ = 0, culled_ = 0, culling_tests_ = 0, leaves_culled_ = 0;
   struct {
     double light = 0, visibility = 0, eye = 0;
   } seconds_;

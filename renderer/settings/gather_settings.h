@@ -16,6 +16,20 @@ struct AllLightsSettings {
 template <class V>
 void describe(V&, AllLightsSettings&) {}
 
+/// What is culled before lights are sampled.
+enum class CullFor { points, cubes };
+
+template <>
+struct EnumTable<CullFor> {
+  static constexpr std::array<EnumValue<CullFor>, 2> values{{
+      {CullFor::points, "points",
+       "groups of lights for each shading point: they face away from it or lie behind its surface"},
+      {CullFor::cubes, "cubes",
+       "nodes of an octree of the lights for each cube of an octree of the scene, both of 64^3 "
+       "cubes, by traversing them together (Kol et al. 2018, 5.1): they face away from the cube"},
+  }};
+};
+
 /// gather: random.
 struct RandomLightsSettings {
   static constexpr std::string_view name = "random";
@@ -24,7 +38,9 @@ struct RandomLightsSettings {
       "in the lights' spatial order (Kol et al. 2018, 5.1)";
 
   int lights = 64;
+  int interleave = 0;
   bool cull = true;
+  CullFor cull_for = CullFor::points;
   double cutoff = 0;
   int filter_radius = 0;
   double filter_normal = 32;
@@ -41,9 +57,19 @@ void describe(V& v, RandomLightsSettings& s) {
             "limited so that they test at most a quarter as many lights as the shading points",
      .min = 1,
      .max = 1 << 20});
+  v("interleave", s.interleave,
+    {.doc =
+         "side of a pattern of pixels that divide the lights among them: each gathers the lights "
+         "at one of interleave^2 offsets, interleave^2 apart in their spatial order, in place of "
+         "`lights` (interleaved shading; Noel 2015, 8.5). 0: none",
+     .min = 0,
+     .max = 64,
+     .unit = "pixels"});
   v("cull", s.cull,
     {.doc = "omit groups of lights that all face away from the shading point or lie behind its "
-            "surface"});
+            "surface, or of `cull_for`"});
+  v("cull_for", s.cull_for,
+    {.doc = "what groups of lights are culled for", .published = "\"cubes\""});
   v("cutoff", s.cutoff,
     {.doc = "ignore lights further from the shading point than this; 0: no limit. Less noise, but "
             "biased",

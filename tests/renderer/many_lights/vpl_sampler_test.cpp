@@ -20,7 +20,7 @@ using Lights = std::map<std::size_t, std::uint64_t>;  // by block
 /// All that may be sampled for a point.
 Lights candidates(const LitScene& lit, const ShadingPoint& point, bool cull,
                   std::size_t most_stretches = 1024) {
-  VplSampler sampler(lit.terms(), {.lights = 1 << 20, .cull = cull}, most_stretches);
+  VplSampler sampler(lit.terms(), {.lights = 1 << 20, .cull = cull}, nullptr, most_stretches);
   Lights all;
   for (const auto& d : sampler.sample(std::span(&point, 1), lit.context(1))) {
     EXPECT_EQ(d.weight, 1.0F);
