@@ -47,7 +47,8 @@ class Rng {
     arriving_power = 13,
     cache_points = 14,
     passes = 15,
-    face_paths = 16
+    face_paths = 16,
+    one_ray = 17
   };
 
   /// `path` < 2^56; `iteration` < 2^32.

@@ -82,6 +82,7 @@ class PairedBdpt final : public Bdpt {
   }
   const PairedSettings& paired() const { return std::get<PairedSettings>(settings_.connections); }
   bool takes_light_path() const { return paired().direct == DirectPoint::light_path; }
+  bool one_ray() const { return paired().rays == ConnectionRays::one; }
   LightPathSetting light_setting(const IterationContext& context,
                                  const SampleCounts& counts) const {
     LightPathSetting setting = Base::light_setting(context, counts);
@@ -132,6 +133,11 @@ class PairedBdpt final : public Bdpt {
       const Tile tile = tiling.tile(i);
       for (int b = 0; b < tile.blocks(); ++b) {
         Base::start(pass, tile.block(b), pairs.eye);
+        if (one_ray()) {
+          pairs.eye.one_ray.emplace().start(
+              {context.seed, context.iteration, pairs.eye.pixels[0], Rng::Purpose::one_ray},
+              EyeBatch::size);
+        }
         if (merging_.connect) walk_light(context, pairs, counters, splats);
         do {
           walk_eye(pass, walk, pairs);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/integrators/guided_integrator.h"
+#include "renderer/integrators/one_ray.h"
 #include "renderer/integrators/strategy_layers.h"
 #include "renderer/path/eye_batch.h"
 #include "renderer/path/gathered_light.h"
@@ -38,6 +39,7 @@ class Bdpt : public GuidedIntegrator {
     GatheredLight gathered{*this};  // for a guide that learns
     bool gathers = false;
     ShadowQueue<BdptContribution> queue;  // of connections
+    std::optional<OneRay<BdptContribution>> one_ray;
   };
   /// The arguments that all functions of a tile's pass share.
   struct TilePass {
@@ -94,7 +96,8 @@ class Bdpt : public GuidedIntegrator {
     known.weight = static_cast<float>(weight(eye, light, c, batch.counts));
     known.s = static_cast<std::uint16_t>(light.index + 1);
     known.t = static_cast<std::uint16_t>(eye.index + 1);
-    batch.queue.add(shadow_ray(eye, light, c), known);
+    const Ray ray = shadow_ray(eye, light, c);
+    batch.one_ray ? batch.one_ray->add(ray, known, batch.queue) : batch.queue.add(ray, known);
   }
 
   /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions, and calls
@@ -123,6 +126,7 @@ class Bdpt : public GuidedIntegrator {
   template <class Arrived>
   void finish(const TilePass& pass, EyePaths& batch, TrainingSamples::Part& samples,
               Arrived&& arrived) const {
+    if (batch.one_ray) batch.one_ray->finish(batch.queue);
     flush(pass, batch, arrived);
     if (batch.gathers) batch.gathered.record(samples);
   }

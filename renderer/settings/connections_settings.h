@@ -89,6 +89,19 @@ void describe_resampling(V& v, ResamplingSettings& s, std::string_view published
      .published = "0"});
 }
 
+/// The shadow rays of a pixel's connections.
+enum class ConnectionRays { all, one };
+
+template <>
+struct EnumTable<ConnectionRays> {
+  static constexpr std::array<EnumValue<ConnectionRays>, 2> values{{
+      {ConnectionRays::all, "all", "one for each connection"},
+      {ConnectionRays::one, "one",
+       "one for each eye path: a connection sampled in proportion to its unoccluded contribution "
+       "stands for all, but those to the eye (Noel 2015, 4.3.2.2)"},
+  }};
+};
+
 /// connections: paired.
 struct PairedSettings {
   static constexpr std::string_view name = "paired";
@@ -97,12 +110,14 @@ struct PairedSettings {
       "emitter";
   EmitterChoice emitters = EmitterChoice::automatic;
   DirectPoint direct = DirectPoint::new_point;  // differs from the published value
+  ConnectionRays rays = ConnectionRays::all;
   bool operator==(const PairedSettings&) const = default;
 };
 template <class V>
 void describe(V& v, PairedSettings& s) {
   describe_emitters(v, s.emitters);
   describe_direct_point(v, s.direct);
+  v("rays", s.rays, {.doc = "the shadow rays of connections"});
 }
 
 /// connections: uniform.

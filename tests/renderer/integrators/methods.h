@@ -137,6 +137,8 @@ inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
       all.push_back({std::string(S::name), joining(max_depth, s)});
     }
   });
+  all.push_back(
+      {"paired_one_ray", joining(max_depth, PairedSettings{.rays = ConnectionRays::one})});
   return all;
 }
 
@@ -196,6 +198,10 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
   });
   add("lights_random", ExactVisibilitySettings{},
       [](auto& s) { s.gather = RandomLightsSettings{.lights = 16}; });
+  add("lights_interleaved", ExactVisibilitySettings{},
+      [](auto& s) { s.gather = RandomLightsSettings{.interleave = 3}; });
+  add("lights_culled_for_cubes", ExactVisibilitySettings{},
+      [](auto& s) { s.gather = RandomLightsSettings{.lights = 16, .cull_for = CullFor::cubes}; });
   return all;
 }
 
