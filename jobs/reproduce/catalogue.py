@@ -3,6 +3,7 @@
 import kol
 import kol_front
 import kol_lights
+import kol_systems
 import nabata
 import noel_clusters
 import noel_connections
@@ -17,11 +18,13 @@ import noel_regions
 import noel_shadows
 import noel_shape
 import noel_stand_ins
+import noel_systems
 import popov
 import references
 
 MODULES = (references, noel_shape, noel_overlays, noel_shadows, noel_gates, noel_node_maps, noel_clusters, noel_guides, noel_regions,
-           noel_portals, noel_mapping, noel_connections, noel_stand_ins, noel_distributions, popov, nabata, kol, kol_lights, kol_front)
+           noel_portals, noel_mapping, noel_connections, noel_stand_ins, noel_distributions, noel_systems, popov, nabata, kol, kol_lights,
+           kol_systems, kol_front)
 ENTRIES = tuple(entry for module in MODULES for entry in module.ENTRIES)
 
 
