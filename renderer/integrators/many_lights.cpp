@@ -135,7 +135,8 @@ class ManyLights final : public Integrator {
 
   /// Whether octrees of the scene and of the lights cull lights.
   bool by_cubes() const {
-    return random() && random()->cull && random()->cull_for == CullFor::cubes;
+    return random() && random()->cull && random()->cull_for == CullFor::cubes &&
+           random()->interleave == 0;
   }
   /// Largest number of lights that a shading point gathers, of `lights`.
   std::size_t sampled(std::size_t lights) const {

@@ -42,8 +42,9 @@ std::vector<VplSampler::Sample> VplSampler::sample(std::span<const ShadingPoint>
   std::uint64_t pairs = 0, kept = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     pairs += before_[terms_.lights().blocks(points[i].edges)];
-    kept += cubes_ != nullptr ? sample_in_cube(points[i], i, context, samples)
-                              : sample_for(points[i], i, candidates[i], context, samples);
+    kept += settings_.interleave > 0 ? sample_blocks(points[i], i, candidates[i], context, samples)
+            : cubes_ != nullptr      ? sample_in_cube(points[i], i, context, samples)
+                                     : sample_for(points[i], i, candidates[i], context, samples);
   }
   if (cubes_ == nullptr) tests_ += stretches_.size() * points.size();
   pairs_ += pairs;
@@ -70,20 +71,36 @@ bool VplSampler::is_near(const V3f& x, std::size_t block, int i) const {
 
 VplSampler::Steps VplSampler::steps(std::uint64_t total, std::uint32_t pixel,
                                     const IterationContext& context) const {
-  if (settings_.interleave > 0) {
-    const auto side = static_cast<std::uint32_t>(settings_.interleave);
-    const auto width = static_cast<std::uint32_t>(context.camera.width());
-    Rng rng(context.seed, context.iteration, 0, Rng::Purpose::gather);
-    const std::uint32_t own = pixel / width % side * side + pixel % width % side;
-    const std::uint64_t step = side * side, first = (own + rng.next_u32() % step) % step;
-    const std::uint64_t count = total > first ? (total - first - 1) / step + 1 : 0;
-    return {static_cast<double>(first), static_cast<double>(step), count};
-  }
   Rng rng(context.seed, context.iteration, pixel, Rng::Purpose::gather);
   // Steps are at least 1, so no light is sampled twice.
   const double step = std::max(1.0, double(total) / double(settings_.lights));
   return {(double(rng.next_u32()) + 0.5) * 0x1p-32 * step, step,
           std::min(total, static_cast<std::uint64_t>(settings_.lights))};
+}
+
+std::uint64_t VplSampler::sample_blocks(const ShadingPoint& at, std::size_t point,
+                                        std::span<const std::size_t> stretches,
+                                        const IterationContext& context,
+                                        std::vector<Sample>& samples) const {
+  const auto side = static_cast<std::uint32_t>(settings_.interleave);
+  const auto width = static_cast<std::uint32_t>(context.camera.width());
+  const std::size_t step = std::size_t{side} * side;
+  Rng rng(context.seed, context.iteration, 0, Rng::Purpose::gather);
+  const std::uint32_t own = at.pixel / width % side * side + at.pixel % width % side;
+  const std::size_t first = (own + rng.next_u32() % step) % step;
+  const std::size_t blocks = terms_.lights().blocks(at.edges);
+  std::uint64_t total = 0;
+  for (const std::size_t s : stretches) {
+    total += lights_of(s);
+    const std::size_t past = stretches_[s].first % step;
+    std::size_t b = stretches_[s].first + (first + step - past) % step;
+    for (; b < std::min(stretches_[s].end, blocks); b += step) {
+      const Sample sample{b, point, 0, static_cast<float>(step)};
+      const std::size_t before = samples.size();
+      for (int i = 0; i < terms_.lights().count(b); ++i) add(at, sample, i, before, samples);
+    }
+  }
+  return total;
 }
 
 void VplSampler::add(const ShadingPoint& at, Sample sample, int i, std::size_t own,

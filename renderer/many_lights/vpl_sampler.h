@@ -16,7 +16,7 @@ namespace lacuna {
 /// Blocks contain lights of similar position and normal. A stretch of consecutive blocks with
 /// common bounds corresponds to a coarse node in the paper's hierarchy. The lights of the stretches
 /// that are not culled are sampled at equal steps from a random start (systematic sampling). With
-/// `interleave`, neighbouring pixels have different starts, and without culling they share out the
+/// `interleave`, neighbouring pixels take different blocks, and without culling they share out the
 /// lights; the pattern moves at random from iteration to iteration.
 class VplSampler {
  public:
@@ -62,6 +62,10 @@ class VplSampler {
   std::uint64_t sample_for(const ShadingPoint& at, std::size_t point,
                            std::span<const std::size_t> stretches, const IterationContext& context,
                            std::vector<Sample>& samples) const;
+  /// The same of whole blocks, those of the pixel's offset in its pattern.
+  std::uint64_t sample_blocks(const ShadingPoint& at, std::size_t point,
+                              std::span<const std::size_t> stretches,
+                              const IterationContext& context, std::vector<Sample>& samples) const;
   /// The same of the lights that the cube of the point keeps.
   std::uint64_t sample_in_cube(const ShadingPoint& at, std::size_t point,
                                const IterationContext& context, std::vector<Sample>& samples) const;

@@ -58,10 +58,9 @@ void describe(V& v, RandomLightsSettings& s) {
      .min = 1,
      .max = 1 << 20});
   v("interleave", s.interleave,
-    {.doc =
-         "side of a pattern of pixels that divide the lights among them: each gathers the lights "
-         "at one of interleave^2 offsets, interleave^2 apart in their spatial order, in place of "
-         "`lights` (interleaved shading; Noel 2015, 8.5). 0: none",
+    {.doc = "side of a pattern of pixels that divide the lights among them: each gathers every "
+            "interleave^2-th group of up to 64 neighbouring lights, in place of `lights` "
+            "(interleaved shading; Noel 2015, 8.5). 0: none. Not with `cull_for` cubes",
      .min = 0,
      .max = 64,
      .unit = "pixels"});
