@@ -7,7 +7,7 @@ from harness.entry import Entries
 from harness.many_lights import visibility
 from harness.measured import error_at, exact, gain_at, geometric_mean_of, mean_of, median_of
 from harness.run import Table, cell_with
-from harness.verdict import at_least, at_most, beside
+from harness.verdict import at_least, at_most, beside, near
 from noel_connections import SCENES, bdpt, with_scenes
 from noel_shadows import GRID, RADII, job
 from noel_shape import ROWS, analyse
@@ -26,7 +26,7 @@ def size(run):
     "geometry clusters \"allow to quickly test if a group of view samples are outside a virtual light cone\"; both passes take time in "
     "proportion to the lights", "many_lights with visibility: gates",
     (at_most(TESTED, 1), beside("2048 light paths: time of the eye pass by clusters / by points"),
-     beside("LA: tests of clusters, 2048 light paths / 512", 49 / 12.3), beside("IL: tests of points, 2048 / 512", 44.2 / 10.9)))
+     near("LA: tests of clusters, 2048 light paths / 512", 49 / 12.3), near("IL: tests of points, 2048 / 512", 44.2 / 10.9)))
 def clustered(run):
     """Tests of cones and time of the eye pass with geometry clusters and without; the pictures are the same."""
     rows = []
@@ -36,7 +36,7 @@ def clustered(run):
             by = {}
             for tests in ("points", "clusters"):
                 value = job("Sponza", visibility("gates", tests=tests), paths, 3, analysis={**GRID, "node_radius": radius}, **size(run))
-                by[tests] = [r["integrator"] for r in run.repeated(f"{tests}-{radius}-{paths}", value, SEEDS)]
+                by[tests] = [r["integrator"] for r in run.repeated(f"{tests}-{radius}-{paths}", value, 4 * SEEDS)]
             found[paths] = by
             t = by["clusters"][0]
             rows.append((which, round(t["virtual_lights"]), *(f"{t[key]:.4g}" for key in (
@@ -61,7 +61,7 @@ SUM, AWAY = "time of the sum, interleaved 8 x 8 / of all lights", "relMSE of int
 @ENTRIES.measured(
     "noel-interleaved", "Noel 2015, 8.5.2, p. 114, and 8.6",
     "interleaved shading over 8 x 8 pixels processes 16 of 1024 lights for each; the thesis leaves it to future work",
-    "many_lights with visibility: node_maps", (beside(SUM, 1 / 64), beside(AWAY), beside(f"{AWAY}, not filtered")))
+    "many_lights with visibility: node_maps", (beside(SUM), beside(AWAY), beside(f"{AWAY}, not filtered")))
 def interleaved(run):
     """The sum with node maps where each of 8 x 8 pixels takes a 64th of the lights, filtered over as many pixels."""
     gathers = {"all": {"type": "all"}, "unfiltered": {"type": "random", "interleave": 8, "cull": False},
