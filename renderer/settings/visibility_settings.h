@@ -463,8 +463,7 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
   v("rays", s.rays, {.doc = "how per_view traces its rays"});
   v("queries", s.queries, {.doc = "how a texel of a light's map is looked up"});
   v("filling", s.filling,
-    {.doc = "how leaves of the scene's octree larger than a texel are drawn. Not for per_view",
-     .published = "\"mips\""});
+    {.doc = "how leaves of the scene's octree larger than a texel are drawn. Not for per_view"});
   v("traversal", s.traversal,
     {.doc = "order in which pairs of nodes of both octrees are processed. Not for per_view",
      .published = "\"breadth_first\""});
