@@ -13,7 +13,7 @@ FULL = [512, 512]
 SCENES = {
     "San Miguel": {"scene": "atrium.glb", "camera": "court", "lights": 550_000, "paths": 329_000, "cache": 1885,
                    "crop": [200, 260], "stand-in": "atrium.glb"},
-    "Hairball": {"scene": "hairball_2800k.glb", "camera": "front", "lights": 100_000, "paths": 34_800, "cache": 500,
+    "Hairball": {"scene": "hairball_2800k.glb", "camera": "front", "lights": 100_000, "paths": 25_450, "cache": 500,
                  "crop": [350, 170], "stand-in": "hairball_2800k.glb"},
     "Sponza": {"scene": "sponza/scene.glb", "camera": "atrium", "lights": 300_000, "paths": 285_000, "cache": 1414,
                "crop": [200, 260]},
