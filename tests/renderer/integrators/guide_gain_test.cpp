@@ -88,15 +88,10 @@ GuideSettings skeleton(const AutoNumber& strength, const AutoNumber& probability
   return s;
 }
 
-TEST(GuideGain, RoundCorners) {
-  const Gain gain({"bends", 12, 160});
-  // Measured: 0.60.
-  gain.expect_below(0.65, skeleton({}, {}));
-  gain.expect_below(0.85, LearnedSkeletonGuideSettings{});
-}
-
 TEST(LongGuideGain, RoundCorners) {
   const Gain gain({"bends", 12, 160});
+  gain.expect_below(0.65, skeleton({}, {}));  // 0.60
+  gain.expect_below(0.85, LearnedSkeletonGuideSettings{});
   // Measured, and without splitting: 0.58 and 0.63, 0.59 and 0.63, 0.56 and 0.60.
   gain.expect_below(0.64, skeleton({8}, {0.5}));
   gain.expect_below(0.62, skeleton({}, {0.5}));

@@ -180,7 +180,7 @@ TEST(Metropolis, FillsAFurnaceEvenly) {
 
 // The error that a picture claims is the error that it has: over many pictures, the squared error
 // against a much better one has the mean of the variances that they estimate.
-TEST(Metropolis, ClaimsTheErrorThatItHas) {
+TEST(LongMetropolis, ClaimsTheErrorThatItHas) {
   const PathScene scene{"cornell"};
   RenderSettings better = square_picture(test::path_tracing(4), 16, 20000);
   better.seed = 9999;

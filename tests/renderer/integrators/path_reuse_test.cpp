@@ -69,7 +69,7 @@ SceneData lit_from_walls(const Material& wall, const Material& floor = test::dif
 
 // A second surface of gloss scatters to each pixel what it scatters there, and no more; one that is
 // partly a mirror shares the rest.
-TEST(PathReuse, HasThePictureOfOthersWithGloss) {
+TEST(LongPathReuse, HasThePictureOfOthersWithGloss) {
   for (const float roughness : {0.5F, 0.0F}) {
     SCOPED_TRACE(roughness);
     Material wall = test::diffuse(Rgb(0.8F, 0.7F, 0.6F));

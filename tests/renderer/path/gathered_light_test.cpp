@@ -132,7 +132,7 @@ TEST(GatheredLight, ReflectedLightDoesNotDependOnTheGuide) {
   settings.max_depth = 2;
   settings.next_event_estimation = false;
   Moments guided, plain;
-  for (std::uint64_t i = 0; i < 400; ++i) {
+  for (std::uint64_t i = 0; i < 100; ++i) {
     Moments of_guided, of_plain;
     for (const TrainingSample& s : samples_of(settings, 0.5, i)) {
       of_guided.add(double(s.reflected));
