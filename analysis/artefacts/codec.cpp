@@ -21,7 +21,7 @@ bool is_symmetric(const SkeletonGraph& graph) {
 }
 
 /// Checks the invariants of SkeletonGraph.
-void check(const SkeletonGraph& graph) {
+void check_graph(const SkeletonGraph& graph) {
   const std::size_t nodes = graph.nodes();
   require(graph.radii.size() == nodes, "a graph needs a radius for each node");
   require(std::all_of(graph.radii.begin(), graph.radii.end(),
@@ -126,7 +126,7 @@ SkeletonGraph Codec<SkeletonGraph>::read(ArtefactReader& in) {
   graph.radii = decode<std::vector<float>>(in);
   graph.first = decode<std::vector<std::uint32_t>>(in);
   graph.neighbours = decode<std::vector<std::uint32_t>>(in);
-  check(graph);
+  check_graph(graph);
   return graph;
 }
 

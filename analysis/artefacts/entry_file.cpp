@@ -154,7 +154,7 @@ void check_key(const ArtefactKey& key, const EntryHeader& header) {
   refuse(EntryFault::other_key, "of another artefact (its key differs)");
 }
 
-void check_name(const std::filesystem::path& file, const EntryHeader& header) {
+void check_file_name(const std::filesystem::path& file, const EntryHeader& header) {
   if (file.filename() != name_of(header.key)) {
     refuse(EntryFault::other_key, "of another artefact (its name does not match its key)");
   }
@@ -226,7 +226,7 @@ std::optional<EntryRefusal> verify_entry(const std::filesystem::path& file, Entr
   return refusal_of([&] {
     const OpenEntry entry(file, header);
     entry.check_checksum();
-    check_name(file, header);
+    check_file_name(file, header);
   });
 }
 

@@ -13,7 +13,8 @@ namespace {
 
 /// Calls visit(6 * region + side, voxel) for each face of the border in plane z.
 template <class Visit>
-void for_each_face(const Grid3<std::uint32_t>& label, BorderFaces which, int z, Visit&& visit) {
+void for_each_border_face(const Grid3<std::uint32_t>& label, BorderFaces which, int z,
+                          Visit&& visit) {
   RegionFaces(label).for_each(z, [&](VoxelFace face, std::uint32_t region, std::uint32_t beyond) {
     if (beyond != no_region || which == BorderFaces::all)
       visit(6 * std::size_t{region} + face.side, face.voxel);
@@ -43,8 +44,8 @@ Borders find_borders(const RegionLabels& labels, BorderFaces which, const Thread
   if (groups == 0) return borders;
   std::vector<std::uint64_t> next(groups, 0);
   run_parallel(pool, size.z, [&](int z) {
-    for_each_face(labels.label, which, z,
-                  [&](std::size_t group, std::uint32_t) { add_one(next[group]); });
+    for_each_border_face(labels.label, which, z,
+                         [&](std::size_t group, std::uint32_t) { add_one(next[group]); });
   });
   for (std::size_t g = 0; g < groups; ++g) {
     borders.first[g + 1] = borders.first[g] + next[g];
@@ -55,7 +56,7 @@ Borders find_borders(const RegionLabels& labels, BorderFaces which, const Thread
                  byte_limit);
   borders.voxels.resize(borders.first.back());
   run_parallel(pool, size.z, [&](int z) {
-    for_each_face(labels.label, which, z, [&](std::size_t group, std::uint32_t voxel) {
+    for_each_border_face(labels.label, which, z, [&](std::size_t group, std::uint32_t voxel) {
       borders.voxels[add_one(next[group])] = voxel;
     });
   });

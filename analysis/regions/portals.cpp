@@ -20,7 +20,7 @@ struct Found {
 
 /// Calls visit(Found) for each face of plane z that leaves the lower of two regions.
 template <class Visit>
-void for_each_face(const Grid3<std::uint32_t>& label, int z, Visit&& visit) {
+void for_each_portal_face(const Grid3<std::uint32_t>& label, int z, Visit&& visit) {
   RegionFaces(label).for_each(z, [&](VoxelFace face, std::uint32_t region, std::uint32_t beyond) {
     if (beyond != no_region && region < beyond) visit(Found{region, beyond, face.voxel, face.side});
   });
@@ -33,7 +33,7 @@ std::vector<Found> sorted_faces(const RegionLabels& labels, const ThreadPool& po
   std::vector<std::uint64_t> first(static_cast<std::size_t>(size.z) + 1, 0);
   run_parallel(pool, size.z, [&](int z) {
     std::uint64_t n = 0;
-    for_each_face(labels.label, z, [&](const Found&) { ++n; });
+    for_each_portal_face(labels.label, z, [&](const Found&) { ++n; });
     first[static_cast<std::size_t>(z) + 1] = n;
   });
   std::partial_sum(first.begin(), first.end(), first.begin());
@@ -45,7 +45,7 @@ std::vector<Found> sorted_faces(const RegionLabels& labels, const ThreadPool& po
   std::vector<Found> by_plane(total), faces(total);
   run_parallel(pool, size.z, [&](int z) {
     std::uint64_t at = first[static_cast<std::size_t>(z)];
-    for_each_face(labels.label, z, [&](const Found& f) { by_plane[at++] = f; });
+    for_each_portal_face(labels.label, z, [&](const Found& f) { by_plane[at++] = f; });
   });
   // By region first, in linear time; the faces of one region are few.
   std::vector<std::uint64_t> of_region(labels.regions.size() + 1, 0);

@@ -33,7 +33,7 @@ void pass_over(Grid3<std::uint32_t>& map, SquaredLines& lines, const RowOfLines&
   }
 }
 
-void plane_distance(const BitGrid3& domain, Grid3<std::uint32_t>& map, int z) {
+void squared_plane_distance(const BitGrid3& domain, Grid3<std::uint32_t>& map, int z) {
   const Imath::V3i size = map.size();
   LineDistance line(size.x);
   std::vector<std::uint16_t> distance(static_cast<std::size_t>(size.x));
@@ -55,7 +55,7 @@ Grid3<std::uint32_t> squared_distance(const BitGrid3& domain, const ThreadPool& 
   require_memory("a map of squared distances", size, voxels * sizeof(std::uint32_t), byte_limit);
   Grid3<std::uint32_t> map(size);
   if (voxels == 0) return map;
-  run_parallel(pool, size.z, [&](int z) { plane_distance(domain, map, z); });
+  run_parallel(pool, size.z, [&](int z) { squared_plane_distance(domain, map, z); });
   const std::size_t plane = map.count() / static_cast<std::size_t>(size.z);
   run_parallel(pool, size.y, [&](int y) {
     SquaredLines lines(size.z);

@@ -22,7 +22,6 @@ namespace lacuna {
 namespace {
 
 using Clock = SlurmWatch::Clock;
-using Phase = SlurmJob::Phase;
 
 RunProgram checked_runner(const ExecutorSettings& settings) {
   check_slurm_programs("--executor slurm");
@@ -67,9 +66,9 @@ class SlurmExecutor::Stopping {
     if (job == 0 || Clock::now() < next_) return;  // once its number is known
     next_ = Clock::now() + again_;
     try {
-      if (!view.last || view.last->phase == Phase::waits) {
+      if (!view.last || view.last->phase == SlurmJob::Phase::waits) {
         programs_.cancel_if_waiting(job);
-      } else if (view.last->phase == Phase::runs) {
+      } else if (view.last->phase == SlurmJob::Phase::runs) {
         if (!asked_) asked_ = Clock::now();
         if (Clock::now() - *asked_ < grace_) {
           if (!std::exchange(told_, true)) programs_.terminate(job);
@@ -173,7 +172,7 @@ std::vector<std::string> SlurmExecutor::words_for(const Task& task,
 
 /// Applies a priority that was changed while the job waits in Slurm.
 void SlurmExecutor::show_priority(const SlurmWatch::View& view) const {
-  if (!view.nice || !view.last || view.last->phase != Phase::waits) return;
+  if (!view.nice || !view.last || view.last->phase != SlurmJob::Phase::waits) return;
   try {
     programs_.set_nice(view.submission.job, *view.nice);
   } catch (const std::exception& error) {
