@@ -149,6 +149,10 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.content = fmt::format("{:016x}", data.content_hash);
 
   const SceneNeeds needs = chooses ? needs_of_candidates(spec) : needs_of(spec, *p.integrator);
+  if (spec.environment && data.environment) {
+    p.warnings.emplace_back(
+        "the file's EXT_lights_image_based is left out: the job names an environment");
+  }
   std::optional<EnvironmentImage> environment;
   if (spec.environment && needs.emission) {
     const auto& e = *spec.environment;

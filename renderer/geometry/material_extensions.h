@@ -34,6 +34,9 @@ struct ClearCoat {
   TextureRef texture = {};  ///< R
   float roughness = 0;
   TextureRef roughness_texture = {};  ///< G
+  bool own_normal = false;            ///< its normal is not that of the base
+  TextureRef normal_texture = {};     ///< as Material::normal_texture, if own_normal
+  float normal_scale = 1;
 
   bool operator==(const ClearCoat&) const = default;
 };
@@ -81,10 +84,10 @@ struct MaterialExtensions {
 
   template <class F>
   void for_each_texture(F&& f) const {
-    for (const TextureRef* t :
-         {&diffuse_transmission.texture, &diffuse_transmission.color_texture, &coat.texture,
-          &coat.roughness_texture, &sheen.color_texture, &sheen.roughness_texture,
-          &anisotropy.texture, &iridescence.texture, &iridescence.thickness_texture}) {
+    for (const TextureRef* t : {&diffuse_transmission.texture, &diffuse_transmission.color_texture,
+                                &coat.texture, &coat.roughness_texture, &coat.normal_texture,
+                                &sheen.color_texture, &sheen.roughness_texture, &anisotropy.texture,
+                                &iridescence.texture, &iridescence.thickness_texture}) {
       if (t->used()) f(*t);
     }
   }

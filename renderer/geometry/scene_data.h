@@ -114,7 +114,7 @@ struct Material {
   }
   /// Whether the lobes differ from point to point of a surface.
   bool varies() const {
-    bool result = vertex_colors || (lacuna && lacuna->chooses());
+    bool result = vertex_colors || extensions.coat.own_normal || (lacuna && lacuna->chooses());
     for_each_scattering_texture([&](const TextureRef&) { result = true; });
     return result;
   }
@@ -159,6 +159,16 @@ struct PunctualLight {
   std::shared_ptr<const SurfaceContact> contact;
 };
 
+/// The environment light of EXT_lights_image_based: a cube map of radiance around the scene.
+struct EnvironmentCube {
+  /// Textures, sRGB: towards +x, -x, +y, -y, +z, -z of the cube, as seen from inside. Their colours
+  /// over their alpha are the radiance (RGBD).
+  std::array<int, 6> faces{};
+  int side = 0;  ///< texels that each face should have along an edge
+  float intensity = 1;
+  M44d to_world = {};  ///< row vectors: w_world = w_cube * to_world; a rotation
+};
+
 /// The contents of a glTF file that Lacuna uses, validated: indices in range, coordinates and
 /// factors finite and within glTF's ranges, no degenerate triangles. Textures are not decoded yet.
 struct SceneData {
@@ -172,6 +182,7 @@ struct SceneData {
   std::vector<std::unique_ptr<Texture>> textures;
   std::vector<CameraData> cameras;
   std::vector<PunctualLight> lights;
+  std::optional<EnvironmentCube> environment;
 
   /// Scene coordinates are the file's coordinates minus `origin`. 0 unless the scene lies far from
   /// the file's origin (gltf_origin.h). All computations, warnings and stored data use scene

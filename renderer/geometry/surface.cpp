@@ -41,23 +41,22 @@ V3f towards_front(V3f bent, const Surface& s) {
   return bent;
 }
 
-/// The shading normal `s.ns`, in scene coordinates, bent by the normal map of the material at
-/// barycentric `at`; `s.ns` without a map, if its texture is not decoded, or if the triangle has no
-/// texture coordinates. Of an instance it is bent in the scene, because normals and directions of
+/// The shading normal `s.ns`, in scene coordinates, bent by a normal map at barycentric `at`;
+/// `s.ns` without a map, if its texture is not decoded, or if the triangle has no texture
+/// coordinates. Of an instance it is bent in the scene, because normals and directions of
 /// the surface transform differently.
-V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at) {
-  const Material& m = scene.materials[s.material];
-  if (!m.normal_texture.used()) return s.ns;
-  const Texture& texture = *scene.textures[static_cast<std::size_t>(m.normal_texture.texture)];
+V3f bent_normal(const SceneData& scene, const Surface& s, const V2f& at, const TextureRef& map,
+                float scale) {
+  if (!map.used()) return s.ns;
+  const Texture& texture = *scene.textures[static_cast<std::size_t>(map.texture)];
   if (!texture.decoded()) return s.ns;
   const Mesh& mesh = scene.meshes[s.mesh];
-  const auto frame = tangent_frame(scene, s, at, m.normal_texture);
-  const auto& uvs = mesh.uvs[static_cast<std::size_t>(m.normal_texture.uv_set)];
+  const auto frame = tangent_frame(scene, s, at, map);
+  const auto& uvs = mesh.uvs[static_cast<std::size_t>(map.uv_set)];
   if (!frame || uvs.empty()) return s.ns;
   // glTF 2.0, section 3.9.3: from [0, 1] to [-1, 1], then x and y times the scale.
-  const Rgb texel = texture.lookup(m.normal_texture.transform(mesh.mix(uvs, s.triangle, at))).rgb;
-  const V3f n((2 * texel.x - 1) * m.normal_scale, (2 * texel.y - 1) * m.normal_scale,
-              2 * texel.z - 1);
+  const Rgb texel = texture.lookup(map.transform(mesh.mix(uvs, s.triangle, at))).rgb;
+  const V3f n((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, 2 * texel.z - 1);
   return towards_front(frame->to_world(n), s);
 }
 
@@ -91,7 +90,23 @@ V3f bumped_normal(const SceneData& scene, const Surface& s, const V2f& at) {
   return towards_front(V3f(n - (gradient - n * n.dot(gradient))), s);
 }
 
+/// The surface with its interpolated normal.
+Surface unbent(const SceneData& scene, const TriangleTable& table, const Hit& hit, const V3f& x) {
+  Surface s(scene, table, hit, x);
+  if (hit.instance != no_instance) place(s, scene, hit, placed_triangle(scene, table, hit));
+  return s;
+}
+
 }  // namespace
+
+V3f coat_normal(const SceneData& scene, const TriangleTable& table, const Surface& s,
+                const V2f& at) {
+  const Hit hit{
+      .mesh = s.mesh, .triangle = s.triangle, .u = at.x, .v = at.y, .instance = s.instance};
+  const ClearCoat& coat = scene.materials[s.material].extensions.coat;
+  return bent_normal(scene, unbent(scene, table, hit, s.x), at, coat.normal_texture,
+                     coat.normal_scale);
+}
 
 Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, const Ray& ray,
                         const Hit& hit) {
@@ -100,9 +115,9 @@ Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, cons
 
 Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, const Hit& hit,
                         const V3f& x) {
-  Surface s(scene, table, hit, x);
-  if (hit.instance != no_instance) place(s, scene, hit, placed_triangle(scene, table, hit));
-  s.ns = bent_normal(scene, s, {hit.u, hit.v});
+  Surface s = unbent(scene, table, hit, x);
+  const Material& m = scene.materials[s.material];
+  s.ns = bent_normal(scene, s, {hit.u, hit.v}, m.normal_texture, m.normal_scale);
   s.ns = bumped_normal(scene, s, {hit.u, hit.v});
   return s;
 }

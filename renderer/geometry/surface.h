@@ -67,6 +67,12 @@ class TriangleTable {
 /// The triangle of a hit, in scene coordinates.
 TriangleShape placed_triangle(const SceneData& scene, const TriangleTable& table, const Hit& hit);
 
+struct Surface;
+/// The normal of the coat (ClearCoat::own_normal) at `s`, where barycentric `at` lies: unit, in
+/// scene coordinates; the interpolated one, bent by the coat's own map.
+V3f coat_normal(const SceneData& scene, const TriangleTable& table, const Surface& s,
+                const V2f& at);
+
 /// The geometry of a hit. `ng` is unit and points to the front of the triangle.
 struct Surface {
   V3f x{0, 0, 0};

@@ -109,6 +109,11 @@ constexpr auto feature_rows = std::to_array<Feature>({
      "", [](RootRef r) { return has_camera(r, "orthographic"); }},
     {"KHR_lights_punctual", Treatment::exact,
      "in W/sr and W/m^2 (see light_units); `range` is left out", ""},
+    {"EXT_lights_image_based", Treatment::approximated,
+     "the faces of the largest mipmap, read as radiance (sRGB over alpha), become an "
+     "equirectangular environment; the irradiance follows from them; the job's `environment` "
+     "replaces it",
+     ""},
     {"EXT_mesh_gpu_instancing", Treatment::exact,
      "TRANSLATION, ROTATION and SCALE; other attributes are left out", ""},
     {"EXT_meshopt_compression", Treatment::exact,
@@ -116,7 +121,10 @@ constexpr auto feature_rows = std::to_array<Feature>({
     {"EXT_texture_webp", Treatment::exact, "still images", ""},
     {"KHR_materials_anisotropy", Treatment::exact, "tangents as for normal maps", ""},
     {"KHR_materials_clearcoat", Treatment::approximated,
-     "the coat has the normal of its base; what it lets through is reciprocal", ""},
+     "what the coat lets through is reciprocal; one with a normal other than its base's is at "
+     "least "
+     "as rough as GGX of width 1e-4",
+     ""},
     {"KHR_materials_diffuse_transmission", Treatment::exact, "", ""},
     {"KHR_materials_emissive_strength", Treatment::exact, "", ""},
     {"KHR_materials_ior", Treatment::exact, "", ""},
@@ -141,7 +149,6 @@ constexpr auto feature_rows = std::to_array<Feature>({
      ""},
     {"KHR_mesh_quantization", Treatment::exact, "", ""},
     {"KHR_texture_transform", Treatment::exact, "", ""},
-    {"EXT_lights_image_based", Treatment::left_out, "", "give the job an `environment`"},
     {"KHR_texture_basisu", Treatment::left_out, "the fallback image is read where there is one",
      "`gltf-transform ktxdecompress IN.glb OUT.glb` makes PNGs"},
     {"KHR_materials_dispersion", Treatment::left_out, "one index of refraction for all colours",

@@ -25,21 +25,22 @@ const std::vector<TypeRow>& type_rows() {
       {"diffuse", Type::diffuse, {"oneSided", "sigma"}},
       {"conductor",
        Type::conductor,
-       {"oneSided", "distribution", "alpha", "alphaTexture", "eta", "k", "reflectance",
+       {"oneSided", "distribution", "masking", "alpha", "alphaTexture", "eta", "k", "reflectance",
         "reflectanceTexture"}},
       {"dielectric",
        Type::dielectric,
-       {"distribution", "alpha", "alphaTexture", "ior", "reflectance", "transmittance"}},
+       {"distribution", "masking", "alpha", "alphaTexture", "ior", "reflectance", "transmittance"}},
       {"thinDielectric", Type::thin_dielectric, {"ior", "reflectance", "transmittance"}},
       {"plastic",
        Type::plastic,
-       {"oneSided", "distribution", "alpha", "alphaTexture", "ior", "nonlinear", "reflectance"}},
+       {"oneSided", "distribution", "masking", "alpha", "alphaTexture", "ior", "nonlinear",
+        "reflectance"}},
       {"phong", Type::glossy, {"oneSided", "reflectance", "reflectanceTexture", "exponent"}},
       {"ward", Type::glossy, {"oneSided", "reflectance", "reflectanceTexture", "alpha", "variant"}},
       {"coating",
        Type::coating,
        {"oneSided", "base", "ior", "thickness", "absorption", "alpha", "alphaTexture",
-        "distribution", "reflectance"}},
+        "distribution", "masking", "reflectance"}},
       {"mixture", Type::mixture, {"oneSided", "parts", "weightTexture"}},
   };
   return rows;
@@ -102,7 +103,15 @@ struct LacunaReader {
     }
     const std::string name = in.string("distribution", "ggx");
     if (name != "ggx" && name != "beckmann") in.refuse("distribution", "\"ggx\" or \"beckmann\"");
-    return name == "ggx" ? FacetShape::ggx_separable : FacetShape::beckmann;
+    const std::string masking = in.string("masking", "separable");
+    if (masking != "separable" && masking != "correlated") {
+      in.refuse("masking", "\"separable\" or \"correlated\"");
+    }
+    if (name == "ggx") {
+      return masking == "correlated" ? FacetShape::ggx : FacetShape::ggx_separable;
+    }
+    if (masking == "correlated") in.refuse("masking", "\"separable\", with Beckmann's facets");
+    return FacetShape::beckmann;
   }
 
   void read(LacunaMaterial& out) const {

@@ -2,6 +2,7 @@
 
 #include "renderer/gltf/gltf_animation.h"
 #include "renderer/gltf/gltf_cameras.h"
+#include "renderer/gltf/gltf_environment.h"
 #include "renderer/gltf/gltf_geometry.h"
 #include "renderer/gltf/gltf_guard.h"
 #include "renderer/gltf/gltf_load.h"
@@ -54,6 +55,7 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
   SceneData scene;
   TextureTable textures(root, warnings);
   scene.materials = read_materials(root, textures, warnings);
+  scene.environment = read_environment(root, textures);
   std::vector<PlacedNode> nodes;
   const auto place_cameras_and_lights = [&](const GltfObject& from, Warnings& to) {
     scene.cameras = read_cameras(from, nodes, scene.origin);

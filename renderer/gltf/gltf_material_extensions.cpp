@@ -58,10 +58,10 @@ void read_coat(const Reader& in, ClearCoat& out) {
   out.roughness = in.number("clearcoatRoughnessFactor", 0);
   out.roughness_texture = in.texture("clearcoatRoughnessTexture", Texture::Encoding::linear,
                                      out.factor > 0 && out.roughness > 0);
-  in.texture("clearcoatNormalTexture", Texture::Encoding::linear, false);
-  if (out.factor > 0 && in.from.has("clearcoatNormalTexture")) {
-    in.from.warn("clearcoatNormalTexture",
-                 "clearcoatNormalTexture is left out: the coat has the normal of its base");
+  if (const auto map = in.from.object("clearcoatNormalTexture")) {
+    out.normal_scale = static_cast<float>(map->number("scale", 1, any_float));
+    out.normal_texture = in.texture("clearcoatNormalTexture", Texture::Encoding::linear,
+                                    out.factor > 0 && out.normal_scale != 0);
   }
 }
 

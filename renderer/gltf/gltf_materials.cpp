@@ -74,6 +74,15 @@ void read_normal_map(const GltfObject& material, TextureTable& textures, Materia
       textures.reference(material, "normalTexture", Encoding::linear, out.normal_scale != 0);
 }
 
+/// Without a map of its own the coat is not bent, even if its base is.
+void set_coat_normal(Material& out) {
+  ClearCoat& coat = out.extensions.coat;
+  const bool same = coat.normal_texture == out.normal_texture &&
+                    (!coat.normal_texture.used() || coat.normal_scale == out.normal_scale);
+  coat.own_normal = coat.factor > 0 && !same;
+  if (same) coat.normal_texture = {};
+}
+
 void read_alpha(const GltfObject& material, Material& out) {
   const std::string mode = material.string("alphaMode", "OPAQUE");
   if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") {
@@ -110,6 +119,7 @@ std::vector<Material> read_materials(const GltfObject& root, TextureTable& textu
     read_material_extensions(material, textures, out.extensions);
     read_alpha(material, out);
     read_normal_map(material, textures, out);
+    set_coat_normal(out);
     read_shading_model(material, textures, out);
     warn_of_unread_extensions(material, warnings);
     materials.push_back(std::move(out));

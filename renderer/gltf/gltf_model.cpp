@@ -232,8 +232,21 @@ void refuse_data_uri(const GltfObject& place, const std::string& uri) {
   if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
     place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
                "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
-               "image/png or image/jpeg");
+               "image/png, image/jpeg, image/webp or image/tiff");
   }
+}
+
+std::optional<Bytes> image_of_data_uri(const GltfObject& image, const std::string& uri) {
+  for (const std::string_view kind : {"data:image/webp;base64,", "data:image/tiff;base64,"}) {
+    if (!uri.starts_with(kind)) continue;
+    Bytes bytes;
+    std::string type;
+    const std::string known = "data:image/png;base64," + uri.substr(kind.size());
+    if (!tinygltf::DecodeDataURI(&bytes, type, known, 0, false)) image.fail("uri is not base64");
+    return bytes;
+  }
+  refuse_data_uri(image, uri);
+  return std::nullopt;
 }
 
 file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,

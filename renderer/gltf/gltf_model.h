@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -84,5 +85,8 @@ file::Model read_model(std::span<const std::uint8_t> file, const Framing& framin
 
 /// Throws SceneError for a data: URI of a kind that tinygltf does not decode.
 void refuse_data_uri(const GltfObject& place, const std::string& uri);
+/// The image of a data: URI that tinygltf leaves as it is, a WebP or TIFF; none if `uri` is a path.
+/// Throws SceneError for other kinds.
+std::optional<Bytes> image_of_data_uri(const GltfObject& image, const std::string& uri);
 
 }  // namespace lacuna::gltf

@@ -186,6 +186,20 @@ std::vector<std::size_t> GltfObject::indices(std::string_view key, std::size_t s
   return out;
 }
 
+std::vector<std::vector<std::size_t>> GltfObject::index_lists(std::string_view key,
+                                                              std::size_t size,
+                                                              std::string_view target) const {
+  std::vector<std::vector<std::size_t>> out;
+  for (const JsonCursor& list : elements(key)) {
+    list.check_list();
+    out.emplace_back();
+    for (std::size_t i = 0; i < list.value().size(); ++i) {
+      out.back().push_back(checked_index(list.at(i), size, target));
+    }
+  }
+  return out;
+}
+
 std::optional<GltfObject> GltfObject::object(std::string_view key) const {
   auto found = cursor_.find(key);
   if (!found) return std::nullopt;

@@ -67,6 +67,9 @@ class GltfObject {
   /// An array of such indices; empty if the key is absent.
   std::vector<std::size_t> indices(std::string_view key, std::size_t size,
                                    std::string_view target) const;
+  /// An array of arrays of such indices; empty if the key is absent.
+  std::vector<std::vector<std::size_t>> index_lists(std::string_view key, std::size_t size,
+                                                    std::string_view target) const;
   /// An array of exactly N numbers; none if the key is absent.
   template <std::size_t N>
   std::optional<std::array<double, N>> numbers(std::string_view key, const Limits& allowed) const;

@@ -34,7 +34,7 @@ Bytes encoded_bytes(const GltfObject& image, const Bytes& inside, const file::Mo
   }
   if (!inside.empty()) return inside;
   const std::string uri = image.string("uri");
-  refuse_data_uri(image, uri);
+  if (auto bytes = image_of_data_uri(image, uri)) return std::move(*bytes);
   return folder.read(uri, image.label(), InputRole::texture);
 }
 
@@ -88,7 +88,10 @@ int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
       used->integer("magFilter", 0, 65535) == nearest) {
     warnings_.once("samplers with magFilter NEAREST are read with bilinear interpolation");
   }
-  const Entry entry{source, encoding, wrap_mode(used, "wrapS"), wrap_mode(used, "wrapT")};
+  return enter({source, encoding, wrap_mode(used, "wrapS"), wrap_mode(used, "wrapT")});
+}
+
+int TextureTable::enter(const Entry& entry) {
   const auto found = std::find(entries_.begin(), entries_.end(), entry);
   const auto index = found - entries_.begin();
   if (found == entries_.end()) entries_.push_back(entry);

@@ -23,6 +23,11 @@ class TextureTable {
   TextureRef reference(const GltfObject& owner, std::string_view key, Texture::Encoding encoding,
                        bool needed);
 
+  /// The texture of an image without a textureInfo, clamped at its edges.
+  int clamped(std::size_t image, Texture::Encoding encoding) {
+    return enter({image, encoding, Texture::Wrap::clamp, Texture::Wrap::clamp});
+  }
+
   /// Creates all textures of the table with their encoded bytes. Throws SceneError if an image is
   /// missing, or if all textures together have more than `most_bytes`, encoded.
   std::vector<std::unique_ptr<Texture>> build(const file::Model& model, SceneFolder& folder,
@@ -39,6 +44,7 @@ class TextureTable {
   /// The index of the image to read. Throws SceneError where there is none of a known kind.
   std::size_t source_of(const GltfObject& texture) const;
   int enter(const GltfObject& texture, Texture::Encoding encoding);
+  int enter(const Entry& entry);
 
   Warnings& warnings_;
   std::vector<GltfObject> textures_, images_, samplers_;

@@ -49,15 +49,19 @@ class Texture {
   Wrap wrap_t() const { return wrap_t_; }
   /// The linear colour of a texel. Must be decoded.
   Rgb texel(const V2i& at) const {
-    const std::uint8_t* p =
-        &texels_[(static_cast<std::size_t>(at.y) * static_cast<std::size_t>(width_) +
-                  static_cast<std::size_t>(at.x)) *
-                 4];
+    const std::uint8_t* p = stored(at);
     return {to_linear_[p[0]], to_linear_[p[1]], to_linear_[p[2]]};
   }
+  /// The alpha of a texel, from 0 to 255. Must be decoded.
+  int alpha(const V2i& at) const { return stored(at)[3]; }
 
  private:
   struct Footprint;
+  const std::uint8_t* stored(const V2i& at) const {
+    return &texels_[(static_cast<std::size_t>(at.y) * static_cast<std::size_t>(width_) +
+                     static_cast<std::size_t>(at.x)) *
+                    4];
+  }
   Footprint footprint(const V2f& uv) const;
 
   std::string label_;

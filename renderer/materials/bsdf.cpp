@@ -52,19 +52,31 @@ Rgb Bsdf::albedo() const {
          (c.reflectance(1) + (passes * passes) * absorption * absorption * covered);
 }
 
-Bsdf::ShadingFrame Bsdf::shading_frame(const V3f& n, const V3f& wo) const {
+V3f Bsdf::coat_normal(const V3f& w, CoatFrame frame) const {
+  const float side = dot(w, ng_);
+  const V3f ng = side < 0 ? -ng_ : ng_;
+  const V3f& own = *lobes_->further->coat_normal;
+  const V3f n = dot(own, ng) < 0 ? -own : own;
+  if (frame == CoatFrame::flat || !(dot(w, n) > 0)) return ng;
+  return frame == CoatFrame::seen && !(dot(reflect(w, n), ng) > 0) ? ng : n;
+}
+
+Bsdf::ShadingFrame Bsdf::shading_frame(const V3f& n, const V3f& wo, CoatFrame coat) const {
   const bool front = dot(wo, ng_) > 0;
   const Interface& i = lobes_->interface;
   ShadingFrame result{n, front, dot(wo, n), i.eta(front), i.bend(front)};
   if (lobes_->facets_compete()) result.mean_weight = lobes_->layer.mean_weight(result.cos_o);
-  if (lobes_->further) result.through = let_through(wo, result.cos_o);
+  if (lobes_->further) {
+    result.through = let_through(wo, result.cos_o);
+    result.coat_n = own_coat_normal() ? coat_normal(wo, coat) : n;
+  }
   return result;
 }
 
-int Bsdf::passage(const ShadingFrame& from, const V3f& wi) const {
+int Bsdf::passage(bool front, const V3f& n, const V3f& wi) const {
   const float side_i = dot(wi, ng_);
-  const float cos_i = dot(wi, from.n);
-  const float same = from.front ? side_i : -side_i;
+  const float cos_i = dot(wi, n);
+  const float same = front ? side_i : -side_i;
   if (same > 0 && cos_i > 0) return 1;
   return same < 0 && cos_i < 0 ? -1 : 0;
 }
@@ -161,7 +173,10 @@ void Bsdf::refracted(const ShadingFrame& from, const Choice* c, const V3f& wo, c
                        -facet->cos_i * facet->jacobian;
   // Walter et al. 2007, eq. 21, times the light's cosine; n_o^2 / (...)^2 is the jacobian, which
   // includes the 1 / eta^2 of radiance.
-  if constexpr (want_f) s.f += share * (common * all.g1_over_cos(wi, cos_i) * cos_i);
+  if constexpr (want_f) {
+    s.f += share * (lobes_->interface.exact() ? all.shadowed(common, wo, from.cos_o, wi, cos_i)
+                                              : common * all.g1_over_cos(wi, cos_i) * cos_i);
+  }
   if constexpr (want_pdf) {
     // dm / dwi = eta^2 |wi.m| / (...)^2 (Walter et al. 2007, eq. 17).
     const FacetProbabilities coin(lobes_->interface.split(facet->cos_o, from.eta).reflected, share);
@@ -187,15 +202,25 @@ void Bsdf::cover(const ShadingFrame& from, const Choice* c, const V3f& wo, const
     if constexpr (want_pdf) s.pdf += static_cast<float>(c->sheen) * 0.5F * inv_pi;
   }
   if constexpr (want_f) s.f *= std::min(o.coat, i.coat);
-  if (!lobes || !covers.coat.any() || covers.coat.smooth() || length < cos_rounding) return;
-  const Facets facets(from.n, covers.coat.alpha);
-  const float d = facets.d(m, wo);
+}
+
+template <bool want_f, bool want_pdf>
+void Bsdf::coat_lobe(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
+                     Scatter& s) const {
+  const Coat& coat = lobes_->further->covers.coat;
+  if (!coat.any() || coat.smooth() || !(lobes_->interface.thin || from.front)) return;
+  const V3f h = wo + wi;
+  const float length = std::sqrt(h.length2());
+  if (passage(from.front, from.coat_n, wi) <= 0 || length < cos_rounding) return;
+  const Facets facets(from.coat_n, coat.alpha);
+  const float d = facets.d(h * (1 / length), wo);
+  const float cos_o = dot(wo, from.coat_n);
   if constexpr (want_f) {
-    s.f += Rgb(covers.coat.reflectance(0.5F * length) * d *
-               facets.g2_over_4cos(wo, from.cos_o, wi, cos_i));
+    s.f += Rgb(coat.reflectance(0.5F * length) * d *
+               facets.g2_over_4cos(wo, cos_o, wi, dot(wi, from.coat_n)));
   }
   if constexpr (want_pdf) {
-    s.pdf += static_cast<float>(c->coat) * 0.25F * facets.g1_over_cos(wo, from.cos_o) * d;
+    s.pdf += static_cast<float>(c->coat) * 0.25F * facets.g1_over_cos(wo, cos_o) * d;
   }
 }
 
@@ -203,15 +228,16 @@ template <bool want_f, bool want_pdf>
 Bsdf::Scatter Bsdf::scatter(const ShadingFrame& from, const Choice* c, const V3f& wo,
                             const V3f& wi) const {
   Scatter s;
-  const int side = passage(from, wi);
+  const int side = passage(from.front, from.n, wi);
   if (coated()) {
     if (side > 0) s = coated_scatter<want_f, want_pdf>(from, c, wo, wi);
     return s;
   }
   if (side > 0) reflected<want_f, want_pdf>(from, c, wo, wi, s);
   if (side < 0) transmitted<want_f, want_pdf>(from, c, wo, wi, s);
-  if (lobes_->further && side != 0) {
-    if (lobes_->further->covers.any()) cover<want_f, want_pdf>(from, c, wo, wi, s);
+  if (lobes_->further) {
+    if (side != 0 && lobes_->further->covers.any()) cover<want_f, want_pdf>(from, c, wo, wi, s);
+    coat_lobe<want_f, want_pdf>(from, c, wo, wi, s);
     if constexpr (want_f) s.f *= lobes_->further->scale;
   }
   return s;
@@ -228,7 +254,7 @@ Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
   const float side_i = dot(wi, ng_);
   if (dark(side) || side_i == 0) return Rgb(0, 0, 0);
-  if (transport == Transport::radiance || flat_) {
+  if (transport == Transport::radiance || reciprocal()) {
     const ShadingFrame from = shading_frame(eye_normal(wo, side), wo);
     const Rgb f = scatter<true, false>(from, nullptr, wo, wi).f;
     // Reciprocal for ns = ng: importance is not scaled by 1 / eta^2.
@@ -241,7 +267,7 @@ Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
 }
 
 Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport transport) const {
-  if (transport != Transport::radiance && !flat_) {
+  if (transport != Transport::radiance && !reciprocal()) {
     return {eval_any(wo, wi, transport), pdf_any(wo, wi, transport)};
   }
   const float side = dot(wo, ng_);
@@ -249,7 +275,7 @@ Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport trans
   const V3f n = eye_normal(wo, side);
   const bool front = side > 0;
   // Early out before the lobes' terms: half of all directions lie behind an opaque surface.
-  if (!transmits() && passage({n, front, 0, 1, 1}, wi) <= 0) return {};
+  if (!transmits() && passage(front, n, wi) <= 0 && !own_coat_normal()) return {};
   const ShadingFrame from = shading_frame(n, wo);
   const Choice c = choice(from);
   Scatter s = scatter<true, true>(from, &c, wo, wi);
@@ -272,17 +298,17 @@ std::optional<LambertLobe> Bsdf::lambert_lobe(const V3f& from) const {
 Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
   if (dark(side)) return {};
-  const auto density = [&](const V3f& n) {
-    const ShadingFrame from = shading_frame(n, wo);
+  const auto density = [&](const V3f& n, CoatFrame coat) {
+    const ShadingFrame from = shading_frame(n, wo, coat);
     const Choice c = choice(from);
     return scatter<false, true>(from, &c, wo, wi).pdf;
   };
-  if (transport == Transport::radiance || flat_) {
-    return Pdf<SolidAngle>(density(eye_normal(wo, side)));
+  if (transport == Transport::radiance || reciprocal()) {
+    return Pdf<SolidAngle>(density(eye_normal(wo, side), CoatFrame::seen));
   }
-  const float by_ng = density(normal(false, side));
-  if (!in_front_of_ns(wo, side)) return Pdf<SolidAngle>(by_ng);
-  return Pdf<SolidAngle>(0.5F * (density(normal(true, side)) + by_ng));
+  const float by_ng = density(normal(false, side), CoatFrame::flat);
+  if (!two_frames(wo, side)) return Pdf<SolidAngle>(by_ng);
+  return Pdf<SolidAngle>(0.5F * (density(front_normal(wo, side), CoatFrame::own) + by_ng));
 }
 
 }  // namespace lacuna

@@ -68,6 +68,7 @@ struct LambertLobe {
 /// `ns` it would scatter little or nothing there, and show a black fringe. The direction towards
 /// the eye is `wo` for radiance and `wi` for importance, so both transports measure the same light:
 ///   eval(a, b, importance) = eval(b, a, radiance) |b.ng| / |a.ng|   (Veach 1997, sec. 5.3.2).
+/// A coat may have a normal of its own, for which the same holds.
 /// All surfaces scatter on both sides; the two sides of an opaque surface are equal.
 class Bsdf {
  public:
@@ -191,7 +192,10 @@ class Bsdf {
     float bend;                    ///< Interface::bend()
     float mean_weight = 0;         ///< of the layer, if facets_compete()
     Covers::Through through = {};  ///< on the side of wo
+    V3f coat_n = {};               ///< as `n`, of a coat; set if there are further lobes
   };
+  /// The normal of a coat that has its own: the one that an eye sees, or one of its two.
+  enum class CoatFrame : std::uint8_t { seen, own, flat };
   /// f |cos| for radiance, and the density for one normal; 0 unless requested.
   struct Scatter {
     Rgb f{0, 0, 0};
@@ -207,6 +211,7 @@ class Bsdf {
     V3f wi;
     bool transmitted = false;
     DeltaSum delta = {};
+    bool by_coat = false;
   };
 
   /// Whether the BSDF is a single symmetric Lambertian lobe: the fast path.
@@ -251,6 +256,14 @@ class Bsdf {
     if (flat_ || lobes_->kind != Lobes::Kind::layered || transmits()) return true;
     return dot(reflect(w, normal(true, side)), ng_) * side > 0;
   }
+  bool own_coat_normal() const { return lobes_->further && lobes_->further->coat_normal; }
+  /// Whether eval() is the same for importance, but for refraction.
+  bool reciprocal() const { return flat_ && !own_coat_normal(); }
+  /// Whether eyes see light from `w` with either of two frames.
+  bool two_frames(const V3f& w, float side) const {
+    return own_coat_normal() || in_front_of_ns(w, side);
+  }
+  V3f coat_normal(const V3f& w, CoatFrame frame) const;
   /// The normal for cosines if the eye is in direction `w`.
   V3f eye_normal(const V3f& w, float side) const { return normal(seen_with_ns(w, side), side); }
 
@@ -270,7 +283,9 @@ class Bsdf {
   /// inside is, and without covers.
   Covers::Through let_through(const V3f& w, float cos) const {
     const bool covered = lobes_->further && (lobes_->interface.thin || dot(w, ng_) > 0);
-    return covered ? lobes_->further->covers.through(cos) : Covers::Through{};
+    if (!covered) return {};
+    const float coat_cos = own_coat_normal() ? dot(w, coat_normal(w, CoatFrame::seen)) : cos;
+    return lobes_->further->covers.through(cos, coat_cos);
   }
 
   // Under a coating, Choice::coat is the probability of its boundary and Choice::facets that of the
@@ -286,7 +301,7 @@ class Bsdf {
   std::optional<LobeSample> sample_coated(const ShadingFrame& from, const Choice& c, const V3f& wo,
                                           double u_lobe, const V2f& u) const;
 
-  ShadingFrame shading_frame(const V3f& n, const V3f& wo) const;
+  ShadingFrame shading_frame(const V3f& n, const V3f& wo, CoatFrame coat = CoatFrame::seen) const;
   Choice choice(const ShadingFrame& from) const;
   void weigh_base(const ShadingFrame& from, Choice& c) const;
   void add_covers(const ShadingFrame& from, Choice& c) const;
@@ -305,13 +320,17 @@ class Bsdf {
   template <bool want_f, bool want_pdf>
   void mirrored(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
                 Scatter& s) const;
-  /// Scales what lies below the covers, and adds their lobes, to the same side only.
+  /// Scales what lies below the covers, and adds sheen, to the same side only.
   template <bool want_f, bool want_pdf>
   void cover(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
              Scatter& s) const;
-  /// 1: wi is on wo's side of both normals (reflection); -1: on the other side of both
-  /// (transmission); 0: neither.
-  int passage(const ShadingFrame& from, const V3f& wi) const;
+  /// Adds the lobe of a rough coat.
+  template <bool want_f, bool want_pdf>
+  void coat_lobe(const ShadingFrame& from, const Choice* c, const V3f& wo, const V3f& wi,
+                 Scatter& s) const;
+  /// 1: wi is on wo's side of ng and of `n`, which is on wo's side (reflection); -1: on the other
+  /// side of both (transmission); 0: neither.
+  int passage(bool front, const V3f& n, const V3f& wi) const;
 
   std::optional<LobeSample> sample_lobe(const ShadingFrame& from, const Choice& c, const V3f& wo,
                                         double u_lobe, const V2f& u) const;

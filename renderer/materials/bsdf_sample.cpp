@@ -161,7 +161,7 @@ Bsdf::LobeSample Bsdf::sample_coat(const ShadingFrame& from, const Choice& c, co
                                    const V2f& u) const {
   const Coat& coat = lobes_->further->covers.coat;
   if (!coat.smooth()) {
-    return {reflect(wo, Facets(from.n, coat.alpha).sample(wo, u))};
+    return {.wi = reflect(wo, Facets(from.coat_n, coat.alpha).sample(wo, u)), .by_coat = true};
   }
   LobeSample result{reflect(wo, from.n)};
   result.delta =
@@ -190,7 +190,7 @@ std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
   if (!(sum.p > 0)) return std::nullopt;
   lobe.p_radiance = sum.p;
   lobe.value = transmitted ? sum.value / (from.bend * from.bend) : sum.value;
-  if (passage(from, lobe.wi) != (transmitted ? -1 : 1)) return std::nullopt;
+  if (passage(from.front, n, lobe.wi) != (transmitted ? -1 : 1)) return std::nullopt;
   const ShadingFrame back = shading_frame(transmitted ? -n : n, lobe.wi);
   if (!(back.cos_o > 0)) return std::nullopt;
   if (transmitted) {  // bend^2 cos_i dwi = cos_o dwo
@@ -229,25 +229,35 @@ std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, double u_lobe, const V
   const float side = dot(wo, ng_);
   if (dark(side)) return std::nullopt;
   V3f n = eye_normal(wo, side);
-  float frame_probability = 1;
-  if (transport == Transport::importance && !flat_) {
+  CoatFrame coat = CoatFrame::seen;
+  const bool by_eye = transport == Transport::radiance || reciprocal();
+  if (!by_eye) {
     n = normal(false, side);
-    if (in_front_of_ns(wo, side)) {
+    coat = CoatFrame::flat;
+    if (two_frames(wo, side)) {
       // Some eyes see the surface with ns, others with ng: sample either.
-      frame_probability = 0.5F;
-      if (u_lobe < 0.5F) n = normal(true, side);
+      if (u_lobe < 0.5F) {
+        n = front_normal(wo, side);
+        coat = CoatFrame::own;
+      }
       u_lobe = 2 * u_lobe - (u_lobe >= 0.5F ? 1.0F : 0.0F);
     }
   }
-  const ShadingFrame from = shading_frame(n, wo);
+  const ShadingFrame from = shading_frame(n, wo, coat);
   const Choice c = choice(from);
   const std::optional<LobeSample> drawn = sample_lobe(from, c, wo, u_lobe, u);
-  if (!drawn || passage(from, drawn->wi) != (drawn->transmitted ? -1 : 1)) return std::nullopt;
-  if (drawn->delta.p > 0) return finish_delta(*drawn, from, wo, frame_probability, transport);
+  if (!drawn) return std::nullopt;
+  const int way = passage(from.front, drawn->by_coat ? from.coat_n : n, drawn->wi);
+  if (way != (drawn->transmitted ? -1 : 1)) return std::nullopt;
+  if (drawn->delta.p > 0) {
+    // Where both frames have this normal, each returns the lobe in full.
+    const float share = by_eye ? 1.0F : frame_probability(wo, n);
+    return finish_delta(*drawn, from, wo, share, transport);
+  }
 
   const V3f& wi = drawn->wi;
   Scatter s;
-  if (transport == Transport::radiance || flat_) {
+  if (by_eye) {
     s = scatter<true, true>(from, &c, wo, wi);
     if (transport == Transport::importance && drawn->transmitted) s.f *= from.bend * from.bend;
   } else {

@@ -50,7 +50,9 @@ struct Covers {
     float coat = 1, sheen = 1;
     float both() const { return coat * sheen; }
   };
-  Through through(float cos) const { return {coat.let_through(cos), sheen.let_through(cos)}; }
+  Through through(float cos, float coat_cos) const {
+    return {coat.let_through(coat_cos), sheen.let_through(cos)};
+  }
 };
 
 }  // namespace lacuna

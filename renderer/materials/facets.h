@@ -37,6 +37,12 @@ class Facets {
     return ggx_g2_over_4cos_of_roots(cos_o, ggx_slope_root(cos_o, alpha_), cos_i,
                                      ggx_slope_root(cos_i, alpha_));
   }
+  /// `x` times G2 / G1(wo), Smith's shadowing of what is visible from `wo`, for `wi` on either
+  /// side.
+  float shadowed(float x, const V3f& wo, float cos_o, const V3f& wi, float cos_i) const {
+    if (shape_ != FacetShape::ggx) return x * g1_over_cos(wi, cos_i) * cos_i;
+    return x * 4 * g2_over_4cos(wo, cos_o, wi, cos_i) / g1_over_cos(wo, cos_o);
+  }
   /// Samples a facet normal, on the side of n, with density sampled_over_d() (wo.m) d(). Those that
   /// are visible from `wo`, if the shape has Smith's masking.
   V3f sample(const V3f& wo, const V2f& u) const {

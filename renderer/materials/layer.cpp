@@ -43,7 +43,7 @@ double transmitted_by(const Facets& facets, const V3f& wo, const V3f& m, float i
   const Fresnel f = fresnel_dielectric(cos, ior);
   if (f.total) return 0;
   const V3f wi = refract(wo, m, ior, f.cos_t);
-  return wi.z < 0 ? double((1 - f.reflectance) * facets.g1_over_cos(wi, -wi.z) * -wi.z) : 0.0;
+  return wi.z < 0 ? double(facets.shadowed(1 - f.reflectance, wo, wo.z, wi, -wi.z)) : 0.0;
 }
 
 /// The fraction of light that facets transmit from outside, once scattered: the mean over visible

@@ -28,7 +28,13 @@ void Lobes::add_further(const SurfaceParams& params) {
         (share * params.diffuse_transmission) * params.diffuse_transmission_color;
     diffuse *= 1 - params.diffuse_transmission;
   }
-  if (params.coat > 0) more.covers.coat = Coat(params.coat, params.coat_alpha);
+  if (params.coat > 0) {
+    // A mirror about a normal of its own would be a second delta lobe: it is the sharpest rough
+    // one.
+    const float least = params.coat_normal ? ggx_min_alpha : 0.0F;
+    more.covers.coat = Coat(params.coat, std::max(params.coat_alpha, least));
+    more.coat_normal = params.coat_normal;
+  }
   if (!is_black(params.sheen_color)) {
     more.covers.sheen = Sheen(params.sheen_color, params.sheen_alpha);
   }

@@ -33,6 +33,7 @@ struct SurfaceParams {
   float alpha_along = 0;  ///< GGX width along `direction`, >= alpha; 0: the facets are isotropic
   V2f direction{1, 0};    ///< unit, in the tangent frame
   ThinFilm film = {};
+  std::optional<V3f> coat_normal = {};     ///< unit, in scene coordinates; none: that of the base
   std::optional<ExactSurface> exact = {};  ///< replaces the lobes of all but base_color and medium
 };
 
@@ -40,7 +41,8 @@ struct SurfaceParams {
 struct FurtherLobes {
   Rgb diffuse_through{0, 0, 0};  ///< Lambert's lobe on the other side: share times colour
   Covers covers;
-  float alpha_along = 0;  ///< as in SurfaceParams; above 0 if `shape` is not glTF's
+  std::optional<V3f> coat_normal;  ///< as in SurfaceParams; such a coat is rough
+  float alpha_along = 0;           ///< as in SurfaceParams; above 0 if `shape` is not glTF's
   V2f direction{1, 0};
   FacetShape shape = FacetShape::ggx;
   float sigma = 0;         ///< of a rough diffuse base (oren_nayar.h); 0: Lambert

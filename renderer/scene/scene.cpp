@@ -8,6 +8,7 @@
 
 #include "renderer/core/frame.h"
 #include "renderer/core/scene_error.h"
+#include "renderer/emitters/environment_cube.h"
 #include "renderer/geometry/alpha_mask.h"
 #include "renderer/geometry/surface_contact.h"
 #include "renderer/geometry/tangent_frame.h"
@@ -44,7 +45,7 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
     : data_(std::make_unique<SceneData>(std::move(data))),
       bounds_(data_->bounds()),
       triangles_(*data_),
-      rays_((decode_textures(needs, pool), RayCaster(*data_, pool))) {
+      rays_((decode_textures(needs, !environment, pool), RayCaster(*data_, pool))) {
   has_media_ = std::ranges::any_of(data_->materials,
                                    [](const Material& m) { return m.medium() != nullptr; });
   plain_ =
@@ -54,8 +55,12 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     find_contacts(pool);
-    emitters_ = std::make_unique<EmitterSet>(
-        *data_, environment ? load_environment(*environment) : nullptr, bounds_, needs.light_tree);
+    emitters_ =
+        std::make_unique<EmitterSet>(*data_,
+                                     environment          ? load_environment(*environment)
+                                     : data_->environment ? environment_of_cube(*data_, pool)
+                                                          : nullptr,
+                                     bounds_, needs.light_tree);
   }
 }
 
@@ -100,6 +105,9 @@ void Scene::make_varying_bsdf(const Surface& s, std::optional<Bsdf>& place) cons
   SurfaceParams params = m.lacuna ? lacuna_params(m, data_->textures, s.uv, bits_of(s))
                                   : surface_params(m, data_->textures, s.uv);
   if (m.vertex_colors) params.base_color *= vertex_color(s);
+  if (m.extensions.coat.own_normal) {
+    params.coat_normal = coat_normal(*data_, triangles_, s, barycentric(s));
+  }
   place.emplace(params, s.ng, s.ns);
 }
 
@@ -130,7 +138,7 @@ void Scene::set_tangents(const Surface& s, Bsdf& bsdf) const {
   bsdf.set_tangents(frame ? frame->s : any.s, frame ? frame->t : any.t);
 }
 
-void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
+void Scene::decode_textures(const SceneNeeds& needs, bool own_environment, const ThreadPool& pool) {
   std::set<int> wanted;
   const auto want = [&](const TextureRef& t) {
     if (t.used()) wanted.insert(t.texture);
@@ -143,6 +151,9 @@ void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
     m.for_each_scattering_texture(want);
     want(m.normal_texture);
     if (m.lacuna) want(m.lacuna->bump);
+  }
+  if (needs.emission && own_environment && data_->environment) {
+    wanted.insert(data_->environment->faces.begin(), data_->environment->faces.end());
   }
   std::vector<Texture*> small;
   std::vector<Texture*> large;

@@ -22,7 +22,7 @@ struct SceneNeeds {
   bool light_tree = false;  ///< selection of emitters for a receiver; requires `emission`
 };
 
-/// The environment light of a job.
+/// The environment light of a job, which replaces that of the file.
 struct EnvironmentImage {
   std::filesystem::path file;
   float scale = 1;
@@ -116,7 +116,8 @@ class Scene {
   void find_contacts(const ThreadPool& pool);
   void make_uniform_lobes();
   void set_tangents(const Surface& s, Bsdf& bsdf) const;
-  void decode_textures(const SceneNeeds& needs, const ThreadPool& pool);
+  /// `own_environment`: whether that of the file counts.
+  void decode_textures(const SceneNeeds& needs, bool own_environment, const ThreadPool& pool);
 
   std::unique_ptr<SceneData> data_;  // on the heap: rays and emitters point into it
   Bounds bounds_;

@@ -76,7 +76,7 @@ DomainSeeds domain_seeds(const SceneData& scene, const CameraData& camera, bool 
                   material.emits_behind());
     }
   }
-  seeds.from_infinity = environment;
+  seeds.from_infinity = environment || scene.environment;
   for (const PunctualLight& light : scene.lights) {
     if (light.kind == PunctualLight::Kind::directional) {
       seeds.from_infinity = true;

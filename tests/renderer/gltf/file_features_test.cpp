@@ -87,6 +87,49 @@ TEST(NormalMaps, TangentsOfTheFileGoBeforeThoseOfTheCoordinates) {
   }
 }
 
+/// A quad under a coat, each with a map or none; where the lobe of the coat sends light from above.
+V3f coat_mirror(const std::vector<std::uint8_t>& base, const std::vector<std::uint8_t>& coat) {
+  GlbBuilder b = mapped_quad(base.empty() ? to_right : base);
+  Json& material = b.json["materials"][0];
+  if (base.empty()) material.erase("normalTexture");
+  Json& layer = material["extensions"]["KHR_materials_clearcoat"];
+  layer = {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.1}};
+  if (!coat.empty()) {
+    layer["clearcoatNormalTexture"]["index"] =
+        coat == base ? 0 : b.add_texture(test::encode8(1, 1, 3, coat));
+  }
+  material["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 0, 0, 1}}, {"metallicFactor", 1}};
+  const ThreadPool pool(1);
+  const Scene scene(load(b), {.materials = true}, std::nullopt, pool);
+  EXPECT_EQ(scene.data().materials[0].extensions.coat.own_normal, base != coat);
+  const Ray ray{V3f(0.3F, 0.4F, 5), V3f(0, 0, -1)};
+  Hit hit;
+  EXPECT_TRUE(scene.rays().intersect(ray, hit));
+  std::optional<Bsdf> bsdf;
+  scene.make_bsdf(scene.surface(ray, hit), bsdf);
+  const V3f above(0, 0, 1);
+  V3f brightest = above;
+  float most = 0;
+  for (int i = 0; i < 180 * 90; ++i) {
+    const float phi = pi * static_cast<float>(i % 180) / 90,
+                theta = pi * static_cast<float>(i / 180) / 180;
+    const V3f wi(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+    const float f = bsdf->eval(above, wi, Transport::radiance).y / wi.z;
+    if (f > most) most = f, brightest = wi;
+  }
+  return brightest;
+}
+
+TEST(NormalMaps, OfACoatAreItsOwn) {
+  const V3f straight(0, 0, 1), right(0.866F, 0, 0.5F), up(0, 0.866F, 0.5F);
+  const float grid = 0.04F;
+  expect_near(coat_mirror({}, {}), straight, grid);
+  expect_near(coat_mirror({}, to_right), right, grid);
+  expect_near(coat_mirror(to_right, {}), straight, grid);
+  expect_near(coat_mirror(to_right, upwards), up, grid);
+  expect_near(coat_mirror(upwards, upwards), up, grid);
+}
+
 /// The only mesh of `data` as a prototype, as the reader makes one, and its instance.
 SceneData as_instance(SceneData data, const M44d& to_scene, bool mirrored) {
   Mesh& mesh = data.meshes[0];

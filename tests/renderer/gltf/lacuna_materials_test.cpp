@@ -75,6 +75,17 @@ TEST(LacunaMaterials, EveryMemberArrives) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(LacunaMaterials, MaskingIsSeparableOrCorrelated) {
+  const auto shape = [](const Json& masking) {
+    Json glass{{"type", "dielectric"}, {"ior", 1.5}, {"alpha", 0.5}};
+    glass.update(masking);
+    return load(lacuna_quad({with_lacuna(glass)})).materials.at(0).lacuna->shape;
+  };
+  EXPECT_EQ(shape(Json::object()), FacetShape::ggx_separable);
+  EXPECT_EQ(shape({{"masking", "separable"}}), FacetShape::ggx_separable);
+  EXPECT_EQ(shape({{"masking", "correlated"}}), FacetShape::ggx);
+}
+
 TEST(LacunaMaterials, RefusesWhatIsNotAllowed) {
   const std::vector<std::pair<Json, std::string>> cases{
       {{{"type", "plastik"}}, "found string \"plastik\"; allowed: \"diffuse\""},
@@ -84,6 +95,9 @@ TEST(LacunaMaterials, RefusesWhatIsNotAllowed) {
       {{{"type", "plastic"}, {"ior", 1.5}, {"alpha", {0.1, 0.2, 0.3}}}, "a number, or two"},
       {{{"type", "plastic"}, {"ior", 1.5}, {"alpha", 1.5}}, "found number 1.5"},
       {{{"type", "ward"}, {"variant", "blinn"}}, "\"balanced\""},
+      {{{"type", "plastic"}, {"ior", 1.5}, {"masking", "none"}}, "\"correlated\""},
+      {{{"type", "plastic"}, {"ior", 1.5}, {"masking", "correlated"}, {"distribution", "beckmann"}},
+       "\"separable\", with Beckmann's facets"},
       {{{"type", "coating"}, {"ior", 1.5}, {"base", 7}}, "materials"},
       {{{"type", "coating"}, {"ior", 1.5}, {"base", 1}}, "transmits no light"},
       {{{"type", "mixture"}, {"parts", {{{"material", 1}, {"weight", 1}}}}}, "two or more"},

@@ -245,6 +245,36 @@ TEST(Images, OneThatIsNotUsedMayBeOfAnyKind) {
   }
 }
 
+TEST(Images, AWebpIsReadFromADataUri) {
+  const auto webp =
+      test::read_bytes(std::string(LACUNA_SOURCE_DIR) + "/tests/fuzz/corpus/texture/lossless.webp");
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string base64;
+  for (std::size_t i = 0; i < webp.size(); i += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      three = three << 8 | (i + k < webp.size() ? webp[i + k] : 0U);
+    for (int k = 3; k >= 0; --k) base64 += digits[three >> (6 * k) & 63];
+  }
+  for (std::size_t k = webp.size(); k % 3 != 0; ++k) base64[base64.size() - 3 + k % 3] = '=';
+  GlbBuilder b;
+  const auto texture = b.add_texture(webp);
+  const auto material =
+      b.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+  b.add_node({{"mesh", b.add_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, static_cast<int>(material))}});
+  const auto texels = [&] {
+    SceneData scene = load(b);
+    scene.textures.at(0)->decode();
+    return std::pair(scene.textures[0]->size(), scene.textures[0]->lookup({0.3F, 0.6F}).rgb);
+  };
+  const auto from_view = texels();
+  b.json["images"][0] = {{"uri", "data:image/webp;base64," + base64}};
+  EXPECT_EQ(texels(), from_view);
+  b.json["images"][0]["uri"] = "data:image/avif;base64," + base64;
+  EXPECT_THROW(load(b), SceneError);
+}
+
 TEST(Compression, WhereTheFallbackHasDataTheyAreRead) {
   GlbBuilder b = test::triangle_scene();
   b.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {

@@ -27,6 +27,8 @@ struct Surface {
     }
     return (params.transmission == 0 && params.diffuse_transmission == 0) || params.metallic == 1;
   }
+  /// Whether radiance and importance are scattered alike where ns = ng.
+  bool reciprocal() const { return !params.coat_normal; }
 };
 
 /// Index of refraction behind the surface, as far as light that passes is refracted.
@@ -157,6 +159,20 @@ inline Roughness facets(float alpha, FacetShape shape = FacetShape::ggx_separabl
   return {{alpha, alpha}, shape};
 }
 
+/// The geometric normal of all views. No axis, so that mixed-up frames show.
+inline V3f view_normal() { return V3f(1, -2, 0.5F).normalized(); }
+/// A direction in the frame of ng.
+inline V3f direction(const V3f& ng, float cos, float phi) {
+  const float sin = std::sqrt(1 - cos * cos);
+  return Frame(ng).to_world({sin * std::cos(phi), sin * std::sin(phi), cos}).normalized();
+}
+/// With a coat whose normal leans by this cosine.
+inline SurfaceParams bent_coat(SurfaceParams p, float cos, float alpha) {
+  p = coated(p, 1, alpha);
+  p.coat_normal = direction(view_normal(), cos, 2.5F);
+  return p;
+}
+
 /// Of LACUNA_materials.
 inline std::vector<Surface> exact_surfaces() {
   using Base = ExactSurface::Base;
@@ -170,6 +186,12 @@ inline std::vector<Surface> exact_surfaces() {
       {"aluminium_ggx", metal_of(facets(0.2F))},
       {"aluminium_beckmann", metal_of(beckmann)},
       {"aluminium_beckmann_sharp", metal_of(facets(0.005F, FacetShape::beckmann))},
+      {"aluminium_correlated", metal_of(facets(0.4F, FacetShape::ggx))},
+      {"aluminium_brushed_correlated", metal_of({{0.2F, 0.6F}, FacetShape::ggx})},
+      {"solid_correlated", glass_of(1.5F, facets(0.2F, FacetShape::ggx))},
+      {"lacquer_correlated", plastic_of(facets(0.4F, FacetShape::ggx), true)},
+      {"varnish_correlated",
+       coated_with(metal_of(facets(0.3F)), facets(0.3F, FacetShape::ggx), none)},
       {"aluminium_brushed", metal_of({{0.1F, 0.4F}, FacetShape::ggx_separable})},
       {"aluminium_brushed_beckmann", metal_of({{0.5F, 0.1F}, FacetShape::beckmann})},
       {"aluminium_one_sided", one_sided(metal_of(facets(0.3F)))},
@@ -212,6 +234,12 @@ inline std::vector<Surface> surfaces() {
       {"coated_mirror", coated(metal(orange, 0), 0.7F, 0)},
       {"coated_plastic", coated(leaf(dielectric(white, 0, 1.5F, 0), 1), 0.8F, 0.2F)},
       {"coated_glass", coated(dielectric(white, 0.2F, 1.5F, 1), 1, 0.4F)},
+      {"bent_coat_over_metal", bent_coat(metal(white, 0.3F), 0.95F, 0.2F)},
+      {"bent_coat_over_mirror", bent_coat(metal(orange, 0), 0.9F, 0.1F)},
+      {"bent_coat_over_leaf", bent_coat(leaf(dielectric(white, 0, 1.5F, 0), 0.5F), 0.8F, 0.3F)},
+      {"bent_coat_over_glass", bent_coat(dielectric(white, 0.2F, 1.5F, 1), 0.9F, 0.2F)},
+      {"bent_coat_over_cloth", bent_coat(cloth(lambert(white), white, 0.3F), 0.5F, 0.2F)},
+      {"bent_sharp_coat", bent_coat(lambert(orange), 0.95F, 0)},
       {"cloth", cloth(lambert(white), white, 0.3F)},
       {"coated_cloth", coated(cloth(dielectric(orange, 0.3F, 1.5F, 0), orange, 0.05F), 1, 0.1F)},
       {"brushed_metal", brushed(metal(white, 0.05F), 0.4F)},
@@ -263,15 +291,8 @@ struct View {
   bool flat() const { return ng == ns; }
 };
 
-/// A direction in the frame of ng.
-inline V3f direction(const V3f& ng, float cos, float phi) {
-  const float sin = std::sqrt(1 - cos * cos);
-  return Frame(ng).to_world({sin * std::cos(phi), sin * std::sin(phi), cos}).normalized();
-}
-
 inline std::vector<View> views() {
-  // No axis, so that mixed-up frames show.
-  const V3f ng = V3f(1, -2, 0.5F).normalized();
+  const V3f ng = view_normal();
   const V3f slightly = direction(ng, 0.95F, 0.4F);
   const V3f strongly = direction(ng, 0.5F, 0.4F);
   return {

@@ -37,9 +37,11 @@ TEST_P(Energy, IsNotCreated) {
   const double level = statistics::sidak(1e-3, surfaces().size() * views().size() * 3);
   std::uint64_t stream = 1000 + GetParam() * 100;
   for (const cases::View& v : views()) {
-    if ((!v.flat() && !surface_.opaque()) || !surface_.bounded()) continue;
+    if (!surface_.bounded()) continue;
     const Bsdf bsdf = cases::bsdf(surface_.params, v.ng, v.ns);
-    const Furnace furnace(bsdf, v.wo, v.flat() ? Transport::importance : Transport::radiance, 20000,
+    const bool alike = v.flat() && surface_.reciprocal();
+    if (!alike && !surface_.opaque()) continue;
+    const Furnace furnace(bsdf, v.wo, alike ? Transport::importance : Transport::radiance, 20000,
                           ++stream);
     for (const statistics::Moments& m : furnace.weight) {
       // Rounding of floats, and of the table that layers are made of.

@@ -20,6 +20,12 @@ class Regions {
     const bool front = dot(v.wo, v.ng) > 0;
     const V3f ns = front ? v.ns : -v.ns;
     const bool behind = dot(v.wo, ns) <= 0;
+    if (p.coat_normal) {
+      const V3f own = dot(*p.coat_normal, up_) > 0 ? *p.coat_normal : -*p.coat_normal;
+      for (const V3f& n : {own, up_}) {
+        if (dot(v.wo, n) > 0) add(p, v.wo, n, front);
+      }
+    }
     if (transport == Transport::radiance) {
       add(p, v.wo, behind || !mirror_stays(p, v.wo, ns) ? up_ : ns, front);
       return;
@@ -46,6 +52,7 @@ class Regions {
   void add(const SurfaceParams& p, const V3f& wo, const V3f& n, bool front) {
     double width = p.f90 + p.metallic > 0 && p.alpha >= ggx_min_alpha ? p.alpha : 1.0F;
     if (p.coat > 0 && p.coat_alpha > 0) width = std::min(width, double(p.coat_alpha));
+    if (p.coat_normal) width = std::min(width, double(std::max(p.coat_alpha, ggx_min_alpha)));
     const float index = cases::index_behind(p);
     const float eta = front ? index : 1 / index;
     const Fresnel f = fresnel_dielectric(dot(wo, n), eta);
@@ -91,7 +98,7 @@ TEST_P(Sampling, FollowsPdf) {
   std::uint64_t stream = GetParam() * 100;
   for (const cases::View& v : views()) {
     for (const Transport transport : both_transports) {
-      if (transport == Transport::importance && v.flat()) continue;
+      if (transport == Transport::importance && v.flat() && surface_.reciprocal()) continue;
       if (too_thin_for_floats(surface_.params, v) || has_pole(surface_.params, v)) continue;
       SCOPED_TRACE(v.name + (transport == Transport::radiance ? " radiance" : " importance"));
       const Bsdf bsdf = cases::bsdf(surface_.params, v.ng, v.ns);
