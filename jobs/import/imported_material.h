@@ -64,6 +64,7 @@ struct ImportedMaterial {
   double sigma = 0;            ///< of Oren-Nayar's facets, radians
 
   bool beckmann = false;
+  bool correlated_masking = false;    ///< of GGX: masking and shadowing correlate by height
   std::array<double, 2> alpha{0, 0};  ///< along u and across; 0: smooth
   std::shared_ptr<const ImportedTexture> alpha_texture;
   Rgb eta{1, 1, 1}, k{0, 0, 0};  ///< of a conductor, relative to the outside

@@ -138,6 +138,7 @@ void ImportedMaterials::add_emission(const ImportedValue& radiance, OrderedJson&
 
 void ImportedMaterials::add_facets(const ImportedMaterial& m, OrderedJson& exact) {
   if (m.beckmann) exact["distribution"] = "beckmann";
+  if (m.correlated_masking && !is_smooth(m)) exact["masking"] = "correlated";
   if (!is_smooth(m)) exact["alpha"] = pair_of(m.alpha);
   if (m.alpha_texture) exact["alphaTexture"] = textures_.number(*m.alpha_texture);
 }

@@ -16,7 +16,8 @@ lacuna::ImportedMesh mesh_of(std::span<const std::uint8_t> bytes) {
   const std::uint8_t first = bytes.empty() ? 0 : bytes[0];
   if (first == 'p') return ply_mesh(bytes, "mesh.ply");
   if (first == 0x1C) return mitsuba::serialized_mesh(bytes, 0, "mesh.serialized");
-  return mitsuba::obj_mesh({bytes.begin(), bytes.end()}, "mesh.obj");
+  auto file = mitsuba::obj_file({bytes.begin(), bytes.end()}, "mesh.obj");
+  return file.parts.empty() ? ImportedMesh() : std::move(file.parts[0].mesh);
 }
 
 }  // namespace

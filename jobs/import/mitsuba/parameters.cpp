@@ -176,12 +176,19 @@ const SceneElement* Parameters::object(std::string_view name) const {
 
 std::vector<const SceneElement*> Parameters::objects(std::string_view tag) const {
   std::vector<const SceneElement*> out;
+  for (const auto& [name, object] : named_objects(tag)) out.push_back(object);
+  return out;
+}
+
+std::vector<std::pair<std::string, const SceneElement*>> Parameters::named_objects(
+    std::string_view tag) const {
+  std::vector<std::pair<std::string, const SceneElement*>> out;
   for (const SceneElement& child : element_.children) {
     if (child.tag != tag && child.tag != "ref") continue;
     const SceneElement& object = ids_.resolve(child);
     if (object.tag != tag) continue;
     child.read = true;
-    out.push_back(&object);
+    out.emplace_back(child.attribute("name"), &object);
   }
   return out;
 }

@@ -51,6 +51,9 @@ class Parameters {
   const SceneElement* object(std::string_view name) const;
   /// All objects with this tag (through `ref`), in order, whatever their names.
   std::vector<const SceneElement*> objects(std::string_view tag) const;
+  /// The same with the names by which this element has them.
+  std::vector<std::pair<std::string, const SceneElement*>> named_objects(
+      std::string_view tag) const;
   /// Marks a parameter as known without an effect on the picture.
   void ignore(std::initializer_list<std::string_view> names) const;
   void note_unread(std::vector<ImportNote>& notes) const;

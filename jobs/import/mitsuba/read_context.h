@@ -15,7 +15,8 @@ struct ReadContext {
   const std::filesystem::path& folder;  ///< of the scene; empty: none
   const SceneIds& ids;
   std::vector<ImportNote>& notes;
-  std::vector<std::string> missing_files;  ///< place and name of each
+  bool reads_mtl = false;                    ///< Mitsuba 0.6 does, later ones do not
+  std::vector<std::string> missing_files{};  ///< place and name of each
 
   Parameters parameters(const SceneElement& element) const { return {element, ids}; }
   void note(const SceneElement& at, std::string treatment, std::string how) const {

@@ -60,7 +60,7 @@ ImportedScene read_root(const SceneElement& root, const std::filesystem::path& f
                         MissingFiles missing) {
   const SceneIds ids(root);
   ImportedScene scene;
-  ReadContext context{folder, ids, scene.notes, {}};
+  ReadContext context{folder, ids, scene.notes, root.attribute("version").starts_with("0.")};
   Textures textures(context);
   Materials materials(context, textures);
   Shapes shapes(context, textures, materials, scene);

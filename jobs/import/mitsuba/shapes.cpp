@@ -48,6 +48,17 @@ bool is_mirroring(const M44d& m) { return m.determinant() < 0; }
 
 std::string bytes_text(const InputBytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
+/// The bytes of a file that `at` calls `name`.
+InputBytes bytes_of(const std::filesystem::path& file, const SceneElement& at,
+                    const std::string& name) {
+  InputFile about;
+  try {
+    return read_input(file, max_mesh_bytes, about);
+  } catch (const std::logic_error& e) {
+    throw SceneError(fmt::format("{}: {}: {}", at.place, name, e.what()));
+  }
+}
+
 }  // namespace
 
 void Shapes::add(const SceneElement& shape, const M44d& to_parent) {
@@ -62,11 +73,10 @@ void Shapes::add(const SceneElement& shape, const M44d& to_parent) {
   const bool flip = p.boolean("flipnormals", false);
   const auto emitters = p.objects("emitter");
   if (emitters.size() > 1) shape.fail("has more than one emitter");
-  const auto material = material_of(p, !emitters.empty());
+  const auto bsdfs = bsdfs_of(p, read_mesh);
   ImportedShape out;
   out.name = shape.attribute("id");
   out.place = shape.place;
-  out.material = with_interior(p, material);
   if (!emitters.empty()) {
     if (emitters[0]->type() != "area") emitters[0]->fail("is not read in a shape; allowed: area");
     const Parameters emitter = context_.parameters(*emitters[0]);
@@ -78,24 +88,30 @@ void Shapes::add(const SceneElement& shape, const M44d& to_parent) {
   for (const char* unread : {"subsurface", "sensor"}) {
     for (const SceneElement* e : p.objects(unread)) context_.note(*e, "left out", "is not read");
   }
-  p.note_unread(context_.notes);
-  if (!read_mesh.mesh) return;
-  out.mesh = read_mesh.mesh;
-  if (!out.mesh->colors.empty() && !material->vertex_colors) {
-    MeshPointer& plain = plain_[out.mesh.get()];
-    if (!plain) {
-      ImportedMesh without = *out.mesh;
-      without.colors.clear();
-      plain = std::make_shared<const ImportedMesh>(std::move(without));
-    }
-    out.mesh = plain;
-  }
   out.to_world = read_mesh.placing * to_world;
-  // Without normals in the file Mitsuba's front is where the placed triangles are
-  // counter-clockwise.
-  const bool by_winding = wound_.contains(read_mesh.mesh.get());
-  out.flipped = flip != (by_winding && is_mirroring(out.to_world));
-  scene_.shapes.push_back(std::move(out));
+  for (std::size_t i = 0; i < read_mesh.parts.size(); ++i) {
+    const MeshPointer& mesh = read_mesh.parts[i].mesh;
+    const auto material = bsdfs[i] != nullptr ? materials_.of(*bsdfs[i])
+                          : emitters.empty()  ? materials_.fallback()
+                                              : materials_.black();
+    out.material = with_interior(p, material);
+    out.mesh = mesh;
+    if (!mesh->colors.empty() && !material->vertex_colors) {
+      MeshPointer& plain = plain_[mesh.get()];
+      if (!plain) {
+        ImportedMesh without = *mesh;
+        without.colors.clear();
+        plain = std::make_shared<const ImportedMesh>(std::move(without));
+      }
+      out.mesh = plain;
+    }
+    // Without normals in the file Mitsuba's front is where the placed triangles are
+    // counter-clockwise.
+    const bool by_winding = wound_.contains(mesh.get());
+    out.flipped = flip != (by_winding && is_mirroring(out.to_world));
+    scene_.shapes.push_back(out);
+  }
+  p.note_unread(context_.notes);
 }
 
 void Shapes::add_group(const SceneElement& group, const M44d& to_parent) {
@@ -120,14 +136,50 @@ void Shapes::add_instance(const Parameters& p, const M44d& to_parent) {
   p.note_unread(context_.notes);
 }
 
-std::shared_ptr<const ImportedMaterial> Shapes::material_of(const Parameters& p, bool emits) {
-  const auto bsdfs = p.objects("bsdf");
-  if (bsdfs.empty()) return emits ? materials_.black() : materials_.fallback();
-  if (bsdfs.size() > 1) {
-    context_.note(p.element(), "approximated",
-                  "its first BSDF is that of all its triangles; an OBJ's materials are not read");
+std::vector<const SceneElement*> Shapes::bsdfs_of(const Parameters& p, const Read& read) {
+  std::vector<const SceneElement*> out(read.parts.size());
+  std::vector<const SceneElement*> of_all;
+  for (const auto& [name, bsdf] : p.named_objects("bsdf")) {
+    bool named = false;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (name.empty() || read.parts[i].material != name) continue;
+      out[i] = bsdf;
+      named = true;
+    }
+    if (!named) of_all.push_back(bsdf);
   }
-  return materials_.of(*bsdfs[0]);
+  if (of_all.size() > 1) {
+    context_.note(p.element(), "approximated",
+                  "its first BSDF is that of all its triangles that the others do not name");
+  }
+  const bool reads_libraries =
+      context_.reads_mtl && of_all.empty() && p.boolean("loadmaterials", true);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i] == nullptr && !of_all.empty()) out[i] = of_all[0];
+    for (const std::string& name : read.libraries) {
+      if (out[i] != nullptr || !reads_libraries) break;
+      const auto& materials = library(p.element(), name);
+      const auto found = materials.find(read.parts[i].material);
+      if (found != materials.end()) out[i] = &found->second;
+    }
+  }
+  return out;
+}
+
+const std::map<std::string, SceneElement>& Shapes::library(const SceneElement& at,
+                                                           const std::string& name) {
+  const auto [found, added] = libraries_.try_emplace(name);
+  if (!added) return found->second;
+  const auto file = context_.file(at, name);
+  if (!file) {
+    context_.note(at, "left out", fmt::format("{} is missing", name));
+    return found->second;
+  }
+  const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+  const std::string text = bytes_text(bytes_of(*file, at, name));
+  found->second = mtl_bsdfs(text, folder.empty() ? "" : folder.string() + "/",
+                            fmt::format("{}: {}", at.place, name));
+  return found->second;
 }
 
 /// A medium within a solid: its absorption.
@@ -180,8 +232,10 @@ Shapes::Read Shapes::read(const Parameters& p) {
   if (type == "sphere") return read_sphere(p);
   if (type == "cylinder") return read_cylinder(p);
   if (type == "disk") note_rounded(p, type);
-  if (type == "disk" || type == "rectangle" || type == "cube") return {unit_mesh(type), {}};
-  if (type == "obj" || type == "ply" || type == "serialized") return {load(p, type), {}};
+  if (type == "disk" || type == "rectangle" || type == "cube") {
+    return {{{"", unit_mesh(type)}}, {}};
+  }
+  if (type == "obj" || type == "ply" || type == "serialized") return load(p, type);
   p.element().fail(
       "is a shape that is not read; allowed: obj, ply, serialized, rectangle, cube, sphere, disk, "
       "cylinder, shapegroup, instance, merge");
@@ -191,7 +245,7 @@ Shapes::Read Shapes::read_sphere(const Parameters& p) {
   note_rounded(p, "sphere");
   const double radius = p.number("radius", 1);
   if (!(radius > 0)) p.element().fail("has a radius that is not above 0");
-  return {unit_mesh("sphere"),
+  return {{{"", unit_mesh("sphere")}},
           scaled(V3d(radius)) * translated(p.vector("center").value_or(V3d(0)))};
 }
 
@@ -206,10 +260,10 @@ Shapes::Read Shapes::read_cylinder(const Parameters& p) {
   const V3d x = (std::abs(z.x) < .9 ? V3d(1, 0, 0) - z * z.x : V3d(0, 1, 0) - z * z.y).normalized(),
             y = z.cross(x);
   const M44d frame(x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, from.x, from.y, from.z, 1);
-  return {unit_mesh("cylinder"), scaled({radius, radius, length}) * frame};
+  return {{{"", unit_mesh("cylinder")}}, scaled({radius, radius, length}) * frame};
 }
 
-Shapes::MeshPointer Shapes::load(const Parameters& p, const std::string& kind) {
+Shapes::Read Shapes::load(const Parameters& p, const std::string& kind) {
   const std::string name = p.text("filename", "");
   bool flat = p.boolean("facenormals", false);
   const bool turned = p.boolean("fliptexcoords", kind == "obj");
@@ -218,43 +272,45 @@ Shapes::MeshPointer Shapes::load(const Parameters& p, const std::string& kind) {
   const auto file = context_.file(p.element(), name);
   if (!file) {
     context_.note(p.element(), "left out", fmt::format("{} is missing", name));
-    return nullptr;
+    return {};
   }
-  MeshPointer& known = files_[fmt::format("{} {} {} {}", file->string(), flat, turned, index)];
-  if (known) return known;
-  InputFile about;
-  InputBytes bytes;
-  try {
-    bytes = read_input(*file, max_mesh_bytes, about);
-  } catch (const std::logic_error& e) {
-    throw SceneError(fmt::format("{}: {}: {}", p.element().place, name, e.what()));
-  }
+  const auto [known, added] =
+      files_.try_emplace(fmt::format("{} {} {} {}", file->string(), flat, turned, index));
+  Read& out = known->second;
+  if (!added) return out;
+  const InputBytes bytes = bytes_of(*file, p.element(), name);
   const std::string label = fmt::format("{}: {}", p.element().place, name);
-  ImportedMesh mesh;
+  ObjFile read;
   bool asks_flat = false;
   if (kind == "ply") {
     std::vector<std::string> skipped;
-    mesh = ply_mesh(bytes, label, &skipped);
+    read.parts.push_back({"", ply_mesh(bytes, label, &skipped)});
     for (const std::string& s : skipped) context_.note(p.element(), "left out", s + " of " + name);
   } else if (kind == "obj") {
-    mesh = obj_mesh(bytes_text(bytes), label);
+    read = obj_file(bytes_text(bytes), label);
   } else {
-    mesh = serialized_mesh(bytes, static_cast<std::uint64_t>(index), label, &asks_flat);
+    const auto of_file = static_cast<std::uint64_t>(index);
+    read.parts.push_back({"", serialized_mesh(bytes, of_file, label, &asks_flat)});
   }
-  mesh.name = std::filesystem::path(name).stem().string();
   flat = flat || asks_flat;
-  const bool by_winding = flat || mesh.normals.empty();
-  if (flat) {
-    mesh.normals.clear();
-  } else if (mesh.normals.empty()) {
-    add_smooth_normals(mesh);
+  for (auto& [material, mesh] : read.parts) {
+    mesh.name = std::filesystem::path(name).stem().string();
+    const bool by_winding = flat || mesh.normals.empty();
+    if (flat) {
+      mesh.normals.clear();
+    } else if (mesh.normals.empty()) {
+      add_smooth_normals(mesh);
+    }
+    orient_by_normals(mesh);
+    // Mitsuba's own v points down: it turns that of an OBJ by default, and no other's.
+    if (!turned) mesh = v_turned(std::move(mesh));
+    out.parts.push_back({material, std::make_shared<const ImportedMesh>(std::move(mesh))});
+    if (by_winding) wound_.insert(out.parts.back().mesh.get());
   }
-  orient_by_normals(mesh);
-  // Mitsuba's own v points down: it turns that of an OBJ by default, and no other's.
-  if (!turned) mesh = v_turned(std::move(mesh));
-  known = std::make_shared<const ImportedMesh>(std::move(mesh));
-  if (by_winding) wound_.insert(known.get());
-  return known;
+  for (const std::string& library : read.libraries) {
+    out.libraries.push_back((std::filesystem::path(name).parent_path() / library).string());
+  }
+  return out;
 }
 
 }  // namespace lacuna::mitsuba

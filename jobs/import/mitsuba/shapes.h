@@ -23,9 +23,15 @@ class Shapes {
 
  private:
   using MeshPointer = std::shared_ptr<const ImportedMesh>;
-  struct Read {
+  /// The triangles of one material of an OBJ; a whole mesh of another kind, with an empty name.
+  struct Part {
+    std::string material;
     MeshPointer mesh;
-    M44d placing;  ///< before the shape's toWorld
+  };
+  struct Read {
+    std::vector<Part> parts;
+    M44d placing;                          ///< before the shape's toWorld
+    std::vector<std::string> libraries{};  ///< of an OBJ, as paths from the scene's folder
   };
 
   void add_group(const SceneElement& group, const M44d& to_parent);
@@ -33,9 +39,12 @@ class Shapes {
   Read read(const Parameters& p);
   Read read_sphere(const Parameters& p);
   Read read_cylinder(const Parameters& p);
-  MeshPointer load(const Parameters& p, const std::string& kind);
+  Read load(const Parameters& p, const std::string& kind);
   MeshPointer unit_mesh(const std::string& type);
-  std::shared_ptr<const ImportedMaterial> material_of(const Parameters& p, bool emits);
+  /// The BSDFs of the parts; null: that of a shape without one.
+  std::vector<const SceneElement*> bsdfs_of(const Parameters& p, const Read& read);
+  const std::map<std::string, SceneElement>& library(const SceneElement& at,
+                                                     const std::string& name);
   std::shared_ptr<const ImportedMaterial> with_interior(
       const Parameters& p, const std::shared_ptr<const ImportedMaterial>& material);
   void note_rounded(const Parameters& p, const std::string& type);
@@ -45,8 +54,9 @@ class Shapes {
   Materials& materials_;
   ImportedScene& scene_;
   std::map<std::string, MeshPointer> units_;
-  std::map<std::string, MeshPointer> files_;          // by everything that the mesh depends on
-  std::map<const ImportedMesh*, MeshPointer> plain_;  // without their colours
+  std::map<std::string, Read> files_;  // by everything that the meshes depend on
+  std::map<std::string, std::map<std::string, SceneElement>> libraries_;  // of MTL, by path
+  std::map<const ImportedMesh*, MeshPointer> plain_;                      // without their colours
   std::map<std::pair<const ImportedMaterial*, const SceneElement*>,
            std::shared_ptr<const ImportedMaterial>>
       filled_;

@@ -74,6 +74,7 @@ Facets read_facets(Context& context, const Parameters& p, double otherwise,
 }
 
 void set_facets(ImportedMaterial& material, const Facets& facets) {
+  material.correlated_masking = true;
   material.alpha = facets.alpha;
   material.alpha_texture = facets.texture;
 }

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -88,20 +89,87 @@ TEST(MitsubaFiles, SerializedMeshMayNotClaimMoreThanItHolds) {
   EXPECT_TRUE(contains(message_of<SceneError>([&] { serialized_of(file, 0); }), "it claims"));
 }
 
+ImportedMesh only_part(const std::string& obj) {
+  const auto parts = mitsuba::obj_file(obj, "a.obj").parts;
+  EXPECT_EQ(parts.size(), 1U);
+  return parts.at(0).mesh;
+}
+
 TEST(MitsubaFiles, ObjSharesCornersAndRefusesMissingVertices) {
   const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\n";
-  const ImportedMesh mesh = mitsuba::obj_mesh(quad + "f 1/1 2/1 3/2\nf 1/1 3/2 4/1\n", "a.obj");
+  const ImportedMesh mesh = only_part(quad + "f 1/1 2/1 3/2\nf 1/1 3/2 4/1\n");
   EXPECT_EQ(mesh.positions.size(), 4U);
   EXPECT_EQ(mesh.triangles.size(), 2U);
   EXPECT_EQ(mesh.uvs[2], V2f(1, 1));
-  EXPECT_TRUE(contains(
-      message_of<SceneError>([&] { mitsuba::obj_mesh(quad + "f 1/1 2/1 9/2\n", "a.obj"); }),
-      "a.obj: a face names vertex 9 of 4"));
+  EXPECT_TRUE(contains(message_of<SceneError>([&] { only_part(quad + "f 1/1 2/1 9/2\n"); }),
+                       "a.obj: a face names vertex 9 of 4"));
+}
+
+/// Two triangles of the material "red", one of "blue", one of none.
+const std::string four_faces =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nusemtl red\nf 1 3 4\nusemtl blue\nf 1 2 "
+    "4\nusemtl red\nf 2 3 4\n";
+
+/// "MATERIAL TRIANGLES" of each shape; its parameters stand in `inside`.
+std::vector<std::string> parts_of(const TemporaryFolder& folder, const std::string& inside,
+                                  const std::string& version = "0.6.0") {
+  const ImportedScene scene = read_mitsuba(
+      folder.write("scene.xml", "<scene version='" + version +
+                                    "'><shape type='obj'><string name='filename' " +
+                                    "value='models/a.obj'/>" + inside + "</shape></scene>"),
+      MissingFiles::refuse);
+  std::vector<std::string> out;
+  for (const ImportedShape& s : scene.shapes) {
+    out.push_back(fmt::format("{} {}", s.material->name, s.mesh->triangles.size()));
+  }
+  return out;
+}
+
+TEST(MitsubaFiles, ObjKeepsTheBsdfsOfItsMaterials) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "models");
+  folder.write("models/a.obj", four_faces);
+  const std::string red = "<bsdf type='diffuse' name='red' id='r'/>",
+                    blue = "<bsdf type='plastic' name='blue' id='b'/>",
+                    others = "<bsdf type='conductor' id='o'/>";
+  using Parts = std::vector<std::string>;
+  EXPECT_EQ(parts_of(folder, red + blue + others), (Parts{"o 1", "r 2", "b 1"}));
+  EXPECT_EQ(parts_of(folder, blue), (Parts{"default 1", "default 2", "b 1"}));
+  EXPECT_EQ(parts_of(folder, others), (Parts{"o 1", "o 2", "o 1"}));
+}
+
+TEST(MitsubaFiles, ObjReadsItsMtlWhereTheSceneHasNoBsdf) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "models");
+  folder.write("models/a.obj", "mtllib a.mtl\n" + four_faces);
+  folder.write("models/map.png", std::string("no picture yet"));
+  folder.write("models/a.mtl",
+               std::string("newmtl red\nKd 1 0.5 0\nKs 0.5 0.5 0.5\nNs 20\nillum 2\nd 0.25\n"
+                           "newmtl blue\nKd 0 0 1\nmap_Kd map.png\n"));
+  using Parts = std::vector<std::string>;
+  EXPECT_EQ(parts_of(folder, ""), (Parts{"default 1", "red 2", "blue 1"}));
+  EXPECT_EQ(parts_of(folder, "<bsdf type='conductor' id='o'/>"), (Parts{"o 1", "o 2", "o 1"}));
+  EXPECT_EQ(parts_of(folder, "<boolean name='loadMaterials' value='false'/>"),
+            (Parts{"default 1", "default 2", "default 1"}));
+  EXPECT_EQ(parts_of(folder, "", "3.0.0"), (Parts{"default 1", "default 2", "default 1"}));
+
+  const ImportedScene old = read_mitsuba(
+      folder.write("scene.xml",
+                   std::string("<scene version='0.6.0'><shape type='obj'><string name='filename' "
+                               "value='models/a.obj'/></shape></scene>")),
+      MissingFiles::refuse);
+  const ImportedMaterial& red = *old.shapes[1].material;
+  EXPECT_EQ(red.type, ImportedMaterial::Type::phong);
+  EXPECT_NEAR(red.diffuse.value.y, 0.21404, 1e-4);  // 0.5 by sRGB's curve
+  EXPECT_EQ(red.exponent, 20);
+  EXPECT_EQ(red.opacity.value.x, 0.25F);
+  EXPECT_TRUE(red.one_sided);
+  ASSERT_NE(old.shapes[2].material->diffuse.texture, nullptr);
+  EXPECT_EQ(old.shapes[2].material->diffuse.texture->file.filename(), "map.png");
 }
 
 TEST(MitsubaFiles, FrontIsWhereNormalsPoint) {
-  ImportedMesh mesh =
-      mitsuba::obj_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n", "a.obj");
+  ImportedMesh mesh = only_part("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n");
   orient_by_normals(mesh);
   EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 2, 1}));
   mesh.normals.clear();

@@ -45,6 +45,7 @@ TEST(PbrtMaterials, Diffuse) {
 
 TEST(PbrtMaterials, RoughnessIsMapped) {
   EXPECT_NEAR(v4_material("\"conductor\" \"float roughness\" .25")->alpha[0], .5, 1e-6);
+  EXPECT_TRUE(v4_material("\"conductor\" \"float roughness\" .25")->correlated_masking);
   const auto plain = v4_material(
       "\"conductor\" \"float uroughness\" .2 \"float vroughness\" .3 \"bool remaproughness\" "
       "false");
