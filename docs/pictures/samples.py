@@ -5,6 +5,7 @@ import argparse
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -28,7 +29,7 @@ def camera_for(printed):
 
 
 def run(file, *arguments):
-    return subprocess.run([LACUNA, *arguments], capture_output=True, text=True, timeout=300,
+    return subprocess.run([LACUNA, *arguments], capture_output=True, text=True, timeout=300, cwd=OUT,
                           env={**os.environ, "LACUNA_SCENES": f"{file.parent}:{OUT}"})
 
 
@@ -42,16 +43,10 @@ def render(index, file):
            "budget": {"iterations": 32}}
     path = OUT / f"{index:03}.json"
     path.write_text(json.dumps(job))
-    rendered = run(file, "render", path, "--again") if path.with_suffix(".job").exists() else run(file, "render", path)
+    rendered = run(file, "render", path)
     if rendered.returncode != 0:
         return None, (rendered.stderr.strip().splitlines() or ["no reason"])[-1]
     return path.with_suffix(".job") / "image.png", checked.stderr.count("warning")
-
-
-def label(picture, index):
-    to = OUT / f"{index:03}.png"
-    subprocess.run(["oiiotool", picture, "--ch", "R,G,B", f"--text:x=4:y={SIDE - 6}:size=14:color=1,1,0", str(index), "-o", to], check=True)
-    return to
 
 
 def main():
@@ -59,24 +54,32 @@ def main():
     parser.add_argument("folders", nargs="*", type=Path, default=[ROOT.parent / "shared/samples", ROOT.parent / "shared/cases"],
                         metavar="FOLDER", help="default: samples/ and cases/ of the folder shared/ beside the tree")
     options = parser.parse_args()
-    files = sorted(f for folder in options.folders for f in folder.rglob("*") if f.suffix in (".glb", ".gltf"))
+    base = {f: folder for folder in options.folders for f in folder.rglob("*") if f.suffix in (".glb", ".gltf")}
+    files = sorted(base)
     if not files:
         parser.error(f"no .glb or .gltf below {', '.join(map(str, options.folders))}")
-    OUT.mkdir(parents=True, exist_ok=True)
-    subprocess.run(["oiiotool", "--create", "2x1", "3", "--fill:color=.6,.6,.6", "2x1", "-o", OUT / "sky.exr"], check=True)
+    shutil.rmtree(OUT, ignore_errors=True)
+    OUT.mkdir(parents=True)
+    # Light from above, so that white shapes differ from their background.
+    subprocess.run(["oiiotool", "--create", "64x32", "3", "--fill:top=1.6,1.6,1.6:bottom=.02,.02,.02", "64x32", "-o", OUT / "sky.exr"],
+                   check=True)
     pictures, rows = [], []
     for index, file in enumerate(files):
         print(f"\r{index + 1} of {len(files)}", end="", file=sys.stderr, flush=True)
         picture, note = render(index, file)
+        at = ""
         if picture:
-            pictures.append(label(picture, index))
+            at = f"{len(pictures) // COLUMNS + 1}.{len(pictures) % COLUMNS + 1}"
+            pictures.append(picture)
             note = f"{note} warnings" if note else ""
-        rows.append(f"| {index} | {file.name} | {'yes' if picture else 'no'} | {note} |")
+        rows.append(f"| {index} | {at} | {file.relative_to(base[file])} | {note} |")
     print(file=sys.stderr)
-    (OUT / "table.md").write_text("\n".join(["| | file | opens | |", "| --- | --- | --- | --- |", *rows]) + "\n")
+    (OUT / "table.md").write_text("\n".join(["| | row.column | file | |", "| --- | --- | --- | --- |", *rows]) + "\n")
+    if not pictures:
+        sys.exit(f"none of {len(files)} files opened: {OUT / 'table.md'}")
     across = min(COLUMNS, len(pictures))
     down = -(-len(pictures) // across)
-    subprocess.run(["oiiotool", *pictures, "--mosaic:pad=4", f"{across}x{down}", "-o", OUT / "sheet.png"], check=True)
+    subprocess.run(["oiiotool", *pictures, "--mosaic:pad=4", f"{across}x{down}", "--ch", "R,G,B", "-o", OUT / "sheet.png"], check=True)
     print(f"{len(pictures)} of {len(files)} files opened: {OUT / 'sheet.png'}, {OUT / 'table.md'}")
 
 
