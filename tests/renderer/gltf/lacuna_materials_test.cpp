@@ -87,7 +87,7 @@ TEST(LacunaMaterials, MaskingIsSeparableOrCorrelated) {
 }
 
 TEST(LacunaMaterials, RefusesWhatIsNotAllowed) {
-  const std::vector<std::pair<Json, std::string>> cases{
+  const std::vector<std::pair<Json, std::string>> refusals{
       {{{"type", "plastik"}}, "found string \"plastik\"; allowed: \"diffuse\""},
       {{{"type", "phong"}, {"ior", 1.5}}, "unknown member \"ior\""},
       {{{"type", "conductor"}, {"eta", {1, 1, 1}}}, "k is missing"},
@@ -112,7 +112,7 @@ TEST(LacunaMaterials, RefusesWhatIsNotAllowed) {
       {{{"type", "coating"}, {"ior", 1.5}, {"base", 0}}, "a part of itself"},
   };
   const Json glass = with_lacuna({{"type", "dielectric"}, {"ior", 1.5}});
-  for (const auto& [extension, expected] : cases) {
+  for (const auto& [extension, expected] : refusals) {
     const std::string error = lacuna_error({with_lacuna(extension), glass});
     EXPECT_NE(error.find(expected), std::string::npos) << extension << "\n" << error;
     EXPECT_NE(error.find("materials[0]"), std::string::npos) << error;

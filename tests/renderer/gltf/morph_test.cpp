@@ -145,9 +145,9 @@ TEST(Morph, HostileWeightsAreRefused) {
   GlbBuilder b = morphed();
   const std::vector<V3f> points(40000, V3f(1, 2, 3));
   const auto accessor = b.add_accessor(points, component_float, "VEC3");
-  Json& primitive = b.json["meshes"][0]["primitives"][0];
-  primitive["attributes"] = {{"POSITION", accessor}};
-  primitive["targets"] = std::vector<Json>(1 << 15, Json{{"POSITION", accessor}});
+  Json& crowded = b.json["meshes"][0]["primitives"][0];
+  crowded["attributes"] = {{"POSITION", accessor}};
+  crowded["targets"] = std::vector<Json>(1 << 15, Json{{"POSITION", accessor}});
   b.json["nodes"][0]["weights"] = std::vector<int>(1 << 15, 1);
   try {
     load(b);
