@@ -90,7 +90,8 @@ class ObjectReader {
   /// Reads the key that selects `values` for `T`, if there is one.
   template <class T>
   void read_values_key() {
-    if (!PublishedFinder::has<T>()) return;
+    static const bool selects = PublishedFinder::has<T>();
+    if (!selects) return;
     know(values_key);
     if (const auto found = object_.find(values_key)) read_enum(*found, values_);
   }

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "jobs/spec/job_json.h"
-#include "jobs/spec/published.h"
 #include "jobs/spec/sweep_spec.h"
 #include "jobs/spec/type_tree.h"
 
@@ -41,13 +39,6 @@ void put_lengths(OrderedJson& schema, const Limits& length, const char* min, con
   if (std::isfinite(length.max)) schema[max] = static_cast<std::int64_t>(length.max);
 }
 
-bool has_published(const Type& type) {
-  return std::any_of(type.elements.begin(), type.elements.end(), has_published) ||
-         std::any_of(type.members.begin(), type.members.end(), [](const Member& m) {
-           return !m.field.published.empty() || has_published(m.type);
-         });
-}
-
 /// Adds the keys to an object's schema. `name`: of the alternative, if it is one.
 void put_members(OrderedJson& schema, const Type& type, std::string_view name = {}) {
   OrderedJson properties = OrderedJson::object();
@@ -66,7 +57,7 @@ void put_members(OrderedJson& schema, const Type& type, std::string_view name = 
     }
     properties[std::string(member.name)] = std::move(property);
   }
-  if (has_published(type)) {
+  if (type.published) {
     const Member values{
         values_key, {.doc = values_doc}, TypeReader::type_of(Values::defaults, {}), {}};
     OrderedJson property = {{"description", description(values)}};

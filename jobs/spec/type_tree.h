@@ -9,6 +9,7 @@
 #include "jobs/spec/described.h"
 #include "jobs/spec/json_writer.h"
 #include "jobs/spec/limits.h"
+#include "jobs/spec/published.h"
 
 namespace lacuna {
 
@@ -38,8 +39,9 @@ struct Type {
   };
 
   Kind kind = Kind::boolean;
-  bool optional = false;  ///< may be null or absent
-  Limits limits = {};     ///< of a number; of the length of a string, name or list
+  bool optional = false;   ///< may be null or absent
+  bool published = false;  ///< an object that may have `values_key`
+  Limits limits = {};      ///< of a number; of the length of a string, name or list
   std::size_t array_size = 0;
   std::vector<Name> names;      ///< word, choice
   std::vector<Type> elements;   ///< array, list, table: one; choice: an object for each name
@@ -75,6 +77,7 @@ class TypeReader {
     Type type;
     type.kind = Type::Kind::object;
     type.members = std::move(reader.members_);
+    type.published = PublishedFinder::has<T>();
     return type;
   }
   template <class... Ts>
