@@ -19,6 +19,20 @@ struct EmittedRay {
   double power;
 };
 
+/// Where the emitters emit a sampled ray from, and the ray.
+struct Emission {
+  EmitterPoint from;
+  EmittedRay along;
+};
+
+/// None where a sample has no density.
+std::optional<Emission> emitted(const EmitterSet& lights, Rng& rng) {
+  const EmitterPoint e = lights.sample(lights.choose(rng));
+  const std::optional<LightLeSample> le = lights.sample_Le(e, rng);
+  if (!le) return std::nullopt;
+  return Emission{e, {le->ray, double(luminance(le->throughput))}};
+}
+
 /// `emit(rng)` returns a ray with its power, or none.
 template <class Emit>
 std::vector<double> arriving(const Scene& scene, const SurfaceLookup& lookup, std::size_t count,
@@ -53,10 +67,8 @@ std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& look
   const EmitterSet& lights = scene.emitters();
   if (lights.empty()) return std::vector<double>(count, 0.0);
   return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<EmittedRay> {
-    const EmitterPoint e = lights.sample(lights.choose(rng));
-    const std::optional<LightLeSample> le = lights.sample_Le(e, rng);
-    if (!le) return std::nullopt;
-    return EmittedRay{le->ray, double(luminance(le->throughput))};
+    const auto e = emitted(lights, rng);
+    return e ? std::optional(e->along) : std::nullopt;
   });
 }
 
@@ -67,14 +79,13 @@ std::uint32_t brightest_part(const Scene& scene, const SurfaceLookup& lookup, st
   bool any = false;
   for (int i = 0; i < rays && !lights.empty(); ++i) {
     Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::arriving_power);
-    const EmitterPoint e = lights.sample(lights.choose(rng));
-    const std::optional<LightLeSample> le = lights.sample_Le(e, rng);
-    if (!le || e.infinite()) continue;
-    const V3d w(le->ray.d), n = e.kind == EmitterPoint::Kind::area ? V3d(e.ng) : w;
-    const std::uint32_t part = lookup.node(V3d(e.x), n, w);
-    const auto emitted = double(luminance(le->throughput));
-    if (part == no_node || !std::isfinite(emitted)) continue;
-    power[part] += emitted;
+    const auto e = emitted(lights, rng);
+    if (!e || e->from.infinite()) continue;
+    const V3d w(e->along.ray.d);
+    const V3d n = e->from.kind == EmitterPoint::Kind::area ? V3d(e->from.ng) : w;
+    const std::uint32_t part = lookup.node(V3d(e->from.x), n, w);
+    if (part == no_node || !std::isfinite(e->along.power)) continue;
+    power[part] += e->along.power;
     any = true;
   }
   if (!any) power = arriving_power(scene, lookup, count, rays, pool);

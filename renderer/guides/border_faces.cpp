@@ -110,9 +110,13 @@ Counters BorderFaceLight::begin(const IterationContext& context, int edges,
     return {V3f(transform.to_world(x)), direction_around(V3f(face.normal()), versine, u.y)};
   };
   std::vector<float> found(light_.size(), 0.0F);
-  const Counters counters = arriving_light(context, std::max(1, edges - 1), ray, found);
+  Counters counters = arriving_light(context, std::max(1, edges - 1), ray, found);
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (std::isfinite(found[i])) light_[i] += double(found[i]);
+    if (std::isfinite(found[i])) {
+      light_[i] += double(found[i]);
+    } else {
+      ++counters.rejected;
+    }
   }
   context.pool.for_each(static_cast<int>(tables_.size()),
                         [&](int r) { make_table(static_cast<std::uint32_t>(r)); });
