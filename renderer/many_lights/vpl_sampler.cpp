@@ -75,7 +75,7 @@ VplSampler::Steps VplSampler::steps(std::uint64_t total, std::uint32_t pixel,
   // Steps are at least 1, so no light is sampled twice.
   const double step = std::max(1.0, double(total) / double(settings_.lights));
   return {(double(rng.next_u32()) + 0.5) * 0x1p-32 * step, step,
-          std::min(total, static_cast<std::uint64_t>(settings_.lights))};
+          std::min(total, static_cast<std::uint64_t>(settings_.lights)), total};
 }
 
 std::uint64_t VplSampler::sample_blocks(const ShadingPoint& at, std::size_t point,
@@ -121,8 +121,7 @@ std::uint64_t VplSampler::sample_for(const ShadingPoint& shaded, std::size_t poi
   std::uint64_t passed = 0;                // number of lights of the preceding stretches
   const std::size_t own = samples.size();  // start of this point's entries
   for (std::uint64_t k = 0; k < sampled.count; ++k) {
-    const double position = sampled.first + static_cast<double>(k) * sampled.step;
-    const auto index = std::min(static_cast<std::uint64_t>(position), total - 1);
+    const std::uint64_t index = sampled.number(k);
     while (index >= passed + lights_of(stretches[at])) passed += lights_of(stretches[at++]);
     const Stretch& s = stretches_[stretches[at]];
     const std::uint64_t light = before_[s.first] + index - passed;
@@ -153,8 +152,7 @@ std::uint64_t VplSampler::sample_in_cube(const ShadingPoint& shaded, std::size_t
   std::uint64_t passed = 0;  // number of lights of the preceding groups
   const std::size_t own = samples.size();
   for (std::uint64_t k = 0; k < sampled.count; ++k) {
-    const double position = sampled.first + static_cast<double>(k) * sampled.step;
-    const auto index = std::min(static_cast<std::uint64_t>(position), total - 1);
+    const std::uint64_t index = sampled.number(k);
     while (index >= passed + groups[at].size()) passed += groups[at++].size();
     const std::uint64_t light = groups[at][index - passed];
     const auto after = std::upper_bound(before_.begin(), before_.end(), light);

@@ -51,10 +51,14 @@ class VplSampler {
   std::uint64_t may_illuminate(const Stretch& s, const PointLanes& points) const;
   bool is_near(const V3f& x, std::size_t block, int i) const;
   float cutoff() const { return static_cast<float>(settings_.cutoff); }
-  /// Positions sampled among `total` lights: `count` of them, at equal steps.
+  /// Numbers sampled below `total`, which is not 0 if `count` is not: `count` of them, at equal
+  /// steps.
   struct Steps {
     double first, step;
-    std::uint64_t count;
+    std::uint64_t count, total;
+    std::uint64_t number(std::uint64_t k) const {
+      return std::min(static_cast<std::uint64_t>(first + static_cast<double>(k) * step), total - 1);
+    }
     float weight() const { return static_cast<float>(step); }
   };
   Steps steps(std::uint64_t total, std::uint32_t pixel, const IterationContext& context) const;

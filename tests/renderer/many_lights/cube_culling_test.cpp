@@ -5,15 +5,12 @@
 #include <set>
 
 #include "renderer/many_lights/vpl_sampler.h"
-#include "renderer/visibility/plain_visibility.h"
-#include "tests/renderer/many_lights/lit_scene.h"
-#include "tests/statistics.h"
+#include "tests/renderer/many_lights/sampled_means.h"
 
 namespace lacuna {
 namespace {
 
-using statistics::Moments;
-using test::gathered;
+using test::expect_means_of_all;
 using test::LitScene;
 
 TEST(CubeCulling, KeepsWhatALightMayIlluminate) {
@@ -82,39 +79,18 @@ TEST(CubeCulling, OfNoLightsIsNothing) {
   EXPECT_TRUE(cubes.lights_of(0).empty());
 }
 
-/// The means of sampled sums over rounds are those of all lights.
-void expect_means(const LitScene& lit, const RandomLightsSettings& settings,
-                  const CubeCulling* cubes) {
-  lit.with_points(400, [&](std::span<const ShadingPoint> points) {
-    const ExactVisibility exact{{}};
-    const auto expected = gathered(lit, lit.context(1), exact, points);
-    VplSampler sampler(lit.terms(), settings, cubes);
-    std::vector<Moments> means(points.size());
-    for (std::uint64_t r = 0; r < 600; ++r) {
-      const auto values = gathered(lit, lit.context(r + 2), exact, points, nullptr, &sampler);
-      for (std::size_t i = 0; i < values.size(); ++i) means[i].add(values[i]);
-    }
-    const double level = statistics::sidak(1e-5, 6 * points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (std::abs(means[i].mean() - expected[i]) <= 1e-6 * expected[i]) continue;
-      EXPECT_GT(statistics::t_test(means[i], expected[i]), level)
-          << "point " << i << ": " << means[i].mean() << ", not " << expected[i];
-    }
-  });
-}
-
 TEST(CubeCulling, LeavesSampledSumsTheirMean) {
   for (const char* scene : {"ajar", "coated_points"}) {
     LitScene lit({scene}, 200, 2);
     const auto octree = lit.space().octree(CubeCulling::levels);
     const CubeCulling cubes(lit.lights(), *octree, 0, lit.pool());
-    expect_means(lit, {.lights = 20}, &cubes);
+    expect_means_of_all(lit, {.lights = 20}, &cubes);
   }
 }
 
 TEST(InterleavedLights, HaveTheMeanOfAll) {
   for (const bool cull : {true, false}) {
-    expect_means(LitScene({"ajar"}, 200, 2), {.interleave = 4, .cull = cull}, nullptr);
+    expect_means_of_all(LitScene({"ajar"}, 200, 2), {.interleave = 4, .cull = cull});
   }
 }
 

@@ -5,13 +5,13 @@
 #include <map>
 
 #include "renderer/visibility/plain_visibility.h"
-#include "tests/renderer/many_lights/lit_scene.h"
+#include "tests/renderer/many_lights/sampled_means.h"
 #include "tests/statistics.h"
 
 namespace lacuna {
 namespace {
 
-using statistics::Moments;
+using test::expect_means_of_all;
 using test::gathered;
 using test::LitScene;
 
@@ -96,25 +96,9 @@ TEST(VplSampler, SamplesAllAlike) {
 
 TEST(VplSampler, SumsHaveTheMeanOfAll) {
   for (const char* scene : {"ajar", "atrium", "coated_points"}) {
+    SCOPED_TRACE(scene);
     const LitScene lit({scene}, 200, 2);
-    lit.with_points(400, [&](std::span<const ShadingPoint> points) {
-      const ExactVisibility exact{{}};
-      const auto expected = gathered(lit, lit.context(1), exact, points);
-      for (const bool cull : {true, false}) {
-        VplSampler sampler(lit.terms(), {.lights = 20, .cull = cull});
-        std::vector<Moments> means(points.size());
-        for (std::uint64_t r = 0; r < 600; ++r) {
-          const auto values = gathered(lit, lit.context(r + 2), exact, points, nullptr, &sampler);
-          for (std::size_t i = 0; i < values.size(); ++i) means[i].add(values[i]);
-        }
-        const double level = statistics::sidak(1e-5, 6 * points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-          if (std::abs(means[i].mean() - expected[i]) <= 1e-6 * expected[i]) continue;
-          EXPECT_GT(statistics::t_test(means[i], expected[i]), level)
-              << scene << ", point " << i << ": " << means[i].mean() << ", not " << expected[i];
-        }
-      }
-    });
+    for (const bool cull : {true, false}) expect_means_of_all(lit, {.lights = 20, .cull = cull});
   }
 }
 
