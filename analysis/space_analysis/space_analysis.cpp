@@ -160,6 +160,8 @@ const SkeletonGraph& SpaceAnalysis::skeleton() {
       return build_graph(thin, distance(), pool_);
     if (input_.settings.node_radius == NodeRadius::chessboard) {
       const auto steps = chebyshev_distance(domain().voxels, pool_, input_.byte_limit());
+      require_memory("a map of squared distances", steps.size(),
+                     steps.count() * sizeof(std::uint32_t), input_.byte_limit());
       Grid3<std::uint32_t> squares(steps.size());
       for (std::size_t i = 0; i < steps.count(); ++i)
         squares[i] = std::uint32_t{steps[i]} * steps[i];
