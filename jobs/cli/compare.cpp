@@ -3,37 +3,38 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/run/results.h"
 #include "jobs/store/inputs.h"
 #include "renderer/film/block_statistics.h"
+#include "renderer/film/crop.h"
 #include "renderer/film/display_errors.h"
+#include "renderer/film/error_map.h"
 #include "renderer/film/metrics.h"
 #include "renderer/film/preview.h"
 #include "renderer/geometry/scene_data.h"
+#include "renderer/images/exr_write.h"
 #include "renderer/images/image_read.h"
+#include "renderer/images/png_write.h"
 
 namespace lacuna {
 
 namespace {
 
-/// A rectangle of pixels.
-struct Crop {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
 struct CompareOptions {
   std::filesystem::path a, b;
   int block = 0;
   std::vector<int> crop;  ///< x, y, width, height; empty: the whole picture
+  std::filesystem::path map;
+  ErrorMetric metric = ErrorMetric::flip;  ///< of the map
 };
 
 /// Throws SceneError if the requested rectangle is not inside the picture.
 Crop crop_of(const CompareOptions& o, const FloatImage& image) {
   if (o.crop.empty()) return {0, 0, image.width, image.height};
   const Crop c{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
-  if (c.x < 0 || c.y < 0 || c.width < 1 || c.height < 1 || c.x > image.width - c.width ||
-      c.y > image.height - c.height) {
+  if (!is_inside(c, image.width, image.height)) {
     throw SceneError(fmt::format("--crop {} {} {} {} is not inside the pictures, {} x {}", c.x, c.y,
                                  c.width, c.height, image.width, image.height));
   }
@@ -42,11 +43,7 @@ Crop crop_of(const CompareOptions& o, const FloatImage& image) {
 
 /// The rectangle's values, three per pixel. Throws SceneError, with `label`, if one is not finite.
 std::vector<double> in_double(const FloatImage& image, const Crop& crop, const std::string& label) {
-  FloatImage part{crop.width, crop.height, {}, {}};
-  for (int y = crop.y; y < crop.y + crop.height; ++y) {
-    const auto row = image.rgb.begin() + 3 * (std::ptrdiff_t{y} * image.width + crop.x);
-    part.rgb.insert(part.rgb.end(), row, row + 3 * std::ptrdiff_t{crop.width});
-  }
+  const FloatImage part{crop.width, crop.height, cut(image.rgb, image.width, crop), {}};
   require_finite(part, label);
   return {part.rgb.begin(), part.rgb.end()};
 }
@@ -92,6 +89,22 @@ void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<d
   if (variance.empty()) return;
   fmt::print("z_mean {:.4f}\nz_deviation {:.4f}\nz_beyond_1.96 {:.4f}\n", s.z_mean, s.z_deviation,
              s.z_beyond);
+}
+
+/// Writes the error of each pixel: values as an EXR, else colours as a PNG.
+void write_map(const CompareOptions& o, const FlipPictures& pictures, const ThreadPool& pool) {
+  const std::vector<float> map = error_map(o.metric, pictures, &pool);
+  const double largest = largest_shown_error(o.metric, map);
+  if (o.map.extension() == ".exr") {
+    ExrPicture picture{pictures.width, pictures.height, {}, PixelType::single_float, {}};
+    picture.layers.push_back({"", {"Y"}, {map.begin(), map.end()}});
+    picture.attributes["metric"] = enum_name(o.metric);
+    write_exr(o.map, picture);
+  } else {
+    write_file_atomically(o.map,
+                          encode_png(pictures.width, pictures.height, magma_codes(map, largest)));
+    fmt::print("map_largest {:.6g}\n", largest);
+  }
 }
 
 /// The picture at a path, which may be a job's folder.
@@ -144,16 +157,23 @@ void compare(CompareOptions o) {
   const std::vector<double> b = in_double(image_b, crop, o.b.string() + where);
   const Errors e = errors(a, b);
   for (const ErrorMetricRow& metric : error_metrics) {
-    if (!needs_reference(metric.value)) continue;
+    if (metric.term == nullptr) continue;
     fmt::print("{:<7} {:.9g}\n", metric.name, e[metric.value]);
   }
+  const FlipPictures both{a, b, crop.width, crop.height};
+  const FlipExposures exposures = flip_exposures(b);
+  const ThreadPool pool(0);
+  fmt::print("{:<7} {:.9g}\nflip_exposures {:.4f} to {:.4f}, {}\n", enum_name(ErrorMetric::flip),
+             flip_mean(hdr_flip(both, exposures, &pool)), exposures.start, exposures.stop,
+             exposures.count);
   fmt::print("mean_a  {:.9g}\nmean_b  {:.9g}\nmean_relative {:.6g}\n", mean(a), mean(b),
              (mean(a) - mean(b)) / mean(b));
   const double exposure = preview_exposure(b);
   const DisplayErrors d = display_errors(a, b, crop.width, crop.height, exposure);
-  fmt::print("exposure {:.6g}\ndisplay_mse {:.6g}\npsnr {:.6g}\nssim {:.6g}\n", exposure, d.mse,
-             d.psnr, d.ssim);
+  fmt::print("exposure {:.6g}\ndisplay_mse {:.6g}\npsnr {:.6g}\nssim {:.6g}\ndisplay_flip {:.6g}\n",
+             exposure, d.mse, d.psnr, d.ssim, flip_mean(ldr_flip(both, exposure, &pool)));
   if (o.block > 0) print_blocks(o, crop, a, b);
+  if (!o.map.empty()) write_map(o, both, pool);
 }
 
 }  // namespace
@@ -163,8 +183,8 @@ void add_compare(CLI::App& app, int& code) {
   CLI::App* command = app.add_subcommand(
       "compare",
       "Print all errors of one EXR against another, and their means; display_mse, "
-      "psnr and ssim compare sRGB values of 0 to 255, at the exposure of B's "
-      "preview");
+      "psnr and ssim compare sRGB values of 0 to 255, and display_flip (LDR-FLIP) displayed "
+      "values, at the exposure of B's preview; flip is HDR-FLIP over flip_exposures");
   command->add_option("A", o->a, "the estimate: an EXR, or a job's folder")
       ->required()
       ->check(CLI::ExistingPath);
@@ -178,6 +198,23 @@ void add_compare(CLI::App& app, int& code) {
       ->add_option("--crop", o->crop, "compare only this rectangle, in pixels from the upper left")
       ->type_name("X Y WIDTH HEIGHT")
       ->expected(4);
+  const auto suffix = [](const std::string& file) -> std::string {
+    const auto end = std::filesystem::path(file).extension();
+    return end == ".png" || end == ".exr" ? "" : fmt::format("\"{}\" is no .png or .exr", file);
+  };
+  CLI::Option* map = command
+                         ->add_option("--map", o->map,
+                                      "write the error of each pixel: values (.exr), or colours "
+                                      "from black, 0, to yellow, map_largest (.png)")
+                         ->check(CLI::Validator(suffix, "FILE.png or .exr"));
+  std::map<std::string, ErrorMetric> metrics;
+  for (const ErrorMetricRow& m : error_metrics) {
+    if (needs_reference(m.value)) metrics.emplace(m.name, m.value);
+  }
+  command->add_option("--metric", o->metric, "the error of the map (default: flip)")
+      ->transform(CLI::CheckedTransformer(metrics))
+      ->option_text("NAME")
+      ->needs(map);
   command->callback([o, &code] {
     compare(*o);
     code = exit_done;

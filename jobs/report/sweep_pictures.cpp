@@ -8,6 +8,7 @@
 
 #include "jobs/report/replicate_bias.h"
 #include "jobs/run/reference.h"
+#include "renderer/film/crop.h"
 #include "renderer/film/preview.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/images/image_read.h"
@@ -19,41 +20,17 @@ using Pixels = std::vector<double>;
 
 constexpr int crop_side = 96;
 
-struct Rectangle {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
-Pixels cut(const Pixels& pixels, int width, const Rectangle& r) {
-  Pixels part;
-  part.reserve(3 * static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height));
-  for (int y = r.y; y < r.y + r.height; ++y) {
-    const auto row = pixels.begin() + 3 * (std::ptrdiff_t{y} * width + r.x);
-    part.insert(part.end(), row, row + 3 * std::ptrdiff_t{r.width});
-  }
-  return part;
-}
-
 /// Squared errors of a picture in each of a grid's rectangles.
-std::vector<double> errors_of(const std::vector<Rectangle>& grid, const Pixels& picture,
+std::vector<double> errors_of(const std::vector<Crop>& grid, const Pixels& picture,
                               const Pixels& reference, int width) {
   std::vector<double> sums;
-  for (const Rectangle& r : grid) {
+  for (const Crop& r : grid) {
     const Pixels a = cut(picture, width, r), b = cut(reference, width, r);
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
     sums.push_back(sum);
   }
   return sums;
-}
-
-/// Rectangles within the picture, half a side apart.
-std::vector<Rectangle> grid_of(int width, int height) {
-  const int w = std::min(crop_side, width), h = std::min(crop_side, height);
-  std::vector<Rectangle> grid;
-  for (int y = 0; y + h <= height; y += std::max(1, h / 2)) {
-    for (int x = 0; x + w <= width; x += std::max(1, w / 2)) grid.push_back({x, y, w, h});
-  }
-  return grid;
 }
 
 /// All cells of one picture.
@@ -108,12 +85,12 @@ class PictureReader {
   }
 
   void note_errors(const Pixels& pixels, int width, int height) {
-    if (grid_.empty()) grid_ = grid_of(width, height);
+    if (grid_.empty()) grid_ = crop_grid(width, height, crop_side, crop_side);
     width_ = width;
     if (reference_) errors_.push_back(errors_of(grid_, pixels, reference_->rgb, width));
   }
 
-  Rectangle choose_crop() const {
+  Crop choose_crop() const {
     if (errors_.empty()) return grid_[grid_.size() / 2];
     std::size_t best = 0;
     double largest = -1;
@@ -130,7 +107,7 @@ class PictureReader {
   }
 
   void cut_crops() {
-    const Rectangle r = choose_crop();
+    const Crop r = choose_crop();
     double exposure = reference_ ? preview_exposure(cut(reference_->rgb, width_, r)) : 0;
     const auto png = [&](const Pixels& part) {
       if (exposure == 0) exposure = preview_exposure(part);
@@ -156,7 +133,7 @@ class PictureReader {
   std::optional<Reference> reference_;
   std::string tried_;
   std::map<std::size_t, std::size_t> firsts_;  // run, by cell
-  std::vector<Rectangle> grid_;
+  std::vector<Crop> grid_;
   std::vector<std::vector<double>> errors_;  // of each first run, in the grid
   int width_ = 0;
 };

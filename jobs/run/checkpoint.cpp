@@ -17,7 +17,7 @@ namespace lacuna {
 namespace {
 
 // Changes with the layout of any saved data.
-constexpr std::string_view format_name = "lacuna-checkpoint-4";
+constexpr std::string_view format_name = "lacuna-checkpoint-5";
 constexpr std::size_t most_text_bytes = std::size_t{1} << 24;  // far more than a key takes
 
 /// The data between the key and the content.

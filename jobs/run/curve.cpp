@@ -67,6 +67,7 @@ void Curve::save(ByteWriter& out) const {
     out.put(r.longest_seconds);
     out.put(r.counters);
     put_optional(out, r.errors);
+    put_optional(out, r.flip);
     put_optional(out, r.est_rmse);
     out.put(static_cast<std::uint8_t>(r.at_floor));
   }
@@ -82,6 +83,7 @@ void Curve::load(ByteReader& in) {
     r.longest_seconds = in.get<double>();
     r.counters = in.get<Counters>();
     r.errors = get_optional<Errors>(in);
+    r.flip = get_optional<double>(in);
     r.est_rmse = get_optional<double>(in);
     r.at_floor = get_flag(in);
   }

@@ -17,14 +17,15 @@ struct CurveRow {
   double longest_seconds = 0;           ///< as in Spent
   Counters counters;
   std::optional<Errors> errors;  ///< against the reference, if there is one
-  std::optional<double> est_rmse;
+  std::optional<double> flip, est_rmse;
   /// More than half of the measured mse is noise of the reference, so the curve no longer shows the
   /// convergence of the method.
   bool at_floor = false;
 
   /// The value of `metric` in this row, if it has one.
   std::optional<double> value(ErrorMetric metric) const {
-    if (!needs_reference(metric)) return est_rmse;
+    if (metric == ErrorMetric::flip) return flip;
+    if (metric == ErrorMetric::est_rmse) return est_rmse;
     return errors ? std::optional((*errors)[metric]) : std::nullopt;
   }
 };

@@ -23,6 +23,7 @@ namespace {
 // Maximum shares of time for checkpoints and previews.
 constexpr double checkpoint_share = 0.01;
 constexpr double preview_share = 0.005;
+constexpr double flip_share = 0.05;  // of FLIP, which costs more than all other errors together
 constexpr double progress_interval = 0.5;  // seconds
 constexpr double preview_interval = 1;     // seconds: shorter jobs write their picture at the end
 
@@ -36,7 +37,8 @@ RenderLoop::RenderLoop(const RenderTask& task)
       clock_(task.pool.threads()),
       checkpoints_(task.spec.checkpoint_seconds, checkpoint_share),
       previews_(preview_interval, preview_share),
-      progress_(progress_interval, checkpoint_share) {}
+      progress_(progress_interval, checkpoint_share),
+      flips_(0, flip_share) {}
 
 std::string RenderLoop::identity() const {
   return checkpoint_key({picture_key(task_.spec), task_.content, version(),
@@ -154,7 +156,7 @@ RenderLoop::End RenderLoop::run_until(const Budget& budget, const std::function<
     if (progress_.due()) report_progress(state_.spent);
   }
   if (state_.spent.iterations == 0) return End::no_iteration;
-  add_row();
+  add_row(true);
   if (!write_last_checkpoint()) return stopped();
   report_progress(state_.spent);
   return End::spent;
@@ -211,7 +213,25 @@ bool RenderLoop::iterate(const std::function<bool()>& late) {
   return true;
 }
 
-void RenderLoop::add_row() {
+std::optional<double> RenderLoop::measure_flip(bool last) {
+  const bool is_target = budget_.error && budget_.error->metric == ErrorMetric::flip;
+  if (!last && !is_target && !flips_.due()) return std::nullopt;
+  const std::vector<double>& reference = task_.reference->rgb;
+  double cost = 0;
+  std::optional<double> flip;
+  try {
+    const ScopedSeconds timed(cost);
+    if (!flip_exposures_) flip_exposures_ = flip_exposures(reference);
+    flip = flip_mean(hdr_flip({state_.film.mean(), reference, frame_.width, frame_.height},
+                              *flip_exposures_, &task_.pool));
+  } catch (const Stopped&) {
+    return std::nullopt;  // the loop sees the interruption
+  }
+  flips_.done(cost);
+  return flip;
+}
+
+void RenderLoop::add_row(bool last) {
   if (state_.spent.iterations == 0) return;
   double cost = 0;
   {
@@ -223,10 +243,12 @@ void RenderLoop::add_row() {
                  state_.spent.longest_seconds,
                  state_.counters,
                  std::nullopt,
+                 std::nullopt,
                  estimated_rmse(state_.film),
                  false};
     if (task_.reference != nullptr) {
       row.errors = errors(state_.film.mean(), task_.reference->rgb);
+      row.flip = measure_flip(last);
       row.at_floor =
           task_.reference->mse && *task_.reference->mse > (*row.errors)[ErrorMetric::mse] / 2;
     }

@@ -11,6 +11,7 @@
 #include "jobs/run/observer.h"
 #include "jobs/run/reference.h"
 #include "jobs/run/run_state.h"
+#include "renderer/film/flip.h"
 #include "renderer/integrators/integrator.h"
 
 namespace lacuna {
@@ -94,7 +95,10 @@ class RenderLoop {
   /// renamed.
   bool load(const JobFolder& folder);
   void count_phases();
-  void add_row();
+  /// `last`: with all errors, whatever they cost.
+  void add_row(bool last = false);
+  /// FLIP of the film; none if it is not due, or interrupted.
+  std::optional<double> measure_flip(bool last);
   /// False if interrupted without seconds left; the previous checkpoint remains.
   bool write_checkpoint_now();
   bool write_last_checkpoint();
@@ -110,7 +114,8 @@ class RenderLoop {
   Spent saved_;              // in the checkpoint
   bool floor_told_ = false;  // whether the warning of the reference's noise was given
   RenderClock clock_;
-  Pace checkpoints_, previews_, progress_;
+  Pace checkpoints_, previews_, progress_, flips_;
+  std::optional<FlipExposures> flip_exposures_;  // of the reference
 };
 
 }  // namespace lacuna

@@ -18,8 +18,8 @@ void add_terms(Errors& sums, double x, double r, std::index_sequence<M...>) {
 }  // namespace
 
 double Errors::operator[](ErrorMetric metric) const {
-  if (needs_reference(metric)) return values[static_cast<std::size_t>(metric)];
-  throw std::invalid_argument(std::string(enum_name(metric)) + " needs no reference");
+  if (row_of(metric).term != nullptr) return values[static_cast<std::size_t>(metric)];
+  throw std::invalid_argument(std::string(enum_name(metric)) + " is no mean of terms");
 }
 
 Errors errors(std::span<const double> estimate, std::span<const double> reference) {
@@ -28,10 +28,10 @@ Errors errors(std::span<const double> estimate, std::span<const double> referenc
   }
   Errors e;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
-    add_terms(e, estimate[i], reference[i], std::make_index_sequence<reference_metrics>());
+    add_terms(e, estimate[i], reference[i], std::make_index_sequence<mean_metrics>());
   }
   const auto n = static_cast<double>(estimate.size());
-  for (std::size_t m = 0; m < reference_metrics; ++m) {
+  for (std::size_t m = 0; m < mean_metrics; ++m) {
     e.values[m] /= n;
     if (error_metrics[m].root) e.values[m] = std::sqrt(e.values[m]);
   }

@@ -9,12 +9,12 @@
 
 namespace lacuna {
 
-/// The errors of an estimate against a reference: one value for each metric that needs a reference,
-/// in the order of renderer/settings/error_metrics.h.
+/// The errors of an estimate against a reference: one value for each metric that is a mean of
+/// terms, in the order of renderer/settings/error_metrics.h.
 struct Errors {
-  std::array<double, reference_metrics> values{};
+  std::array<double, mean_metrics> values{};
 
-  /// Throws std::invalid_argument for a metric that needs no reference.
+  /// Throws std::invalid_argument for a metric that is no mean of terms.
   double operator[](ErrorMetric metric) const;
 };
 

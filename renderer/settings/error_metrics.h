@@ -11,7 +11,7 @@
 namespace lacuna {
 
 /// Error of an estimate x against a reference r, over pixels and channels. Smaller is better.
-enum class ErrorMetric { mae, rmse, mse, relmse, smape, est_rmse };
+enum class ErrorMetric { mae, rmse, mse, relmse, smape, flip, est_rmse };
 
 constexpr double squared_error(double x, double r) { return (x - r) * (x - r); }
 
@@ -25,7 +25,7 @@ struct ErrorMetricRow {
   std::string_view unit = {};
   bool squared = false;  ///< decreases as 1 / samples; the others as 1 / sqrt(samples)
   bool needs_reference = true;
-  /// With a reference, the error is the mean of term(x, r) over pixels and channels.
+  /// If given, the error is the mean of term(x, r) over pixels and channels.
   double (*term)(double x, double r) = nullptr;
   bool root = false;  ///< the error is the square root of that mean
 };
@@ -33,7 +33,7 @@ struct ErrorMetricRow {
 /// In the order of the enumerators, which is the order of the columns of curve.csv.
 template <>
 struct EnumTable<ErrorMetric> {
-  static constexpr std::array<ErrorMetricRow, 6> values{{
+  static constexpr std::array<ErrorMetricRow, 7> values{{
       {.value = ErrorMetric::mae,
        .name = "mae",
        .doc = "mean |x - r|",
@@ -66,6 +66,10 @@ struct EnumTable<ErrorMetric> {
        .label = "SMAPE",
        .term = [](double x,
                   double r) { return std::abs(x - r) / ((std::abs(x) + std::abs(r)) / 2 + 0.01); }},
+      {.value = ErrorMetric::flip,
+       .name = "flip",
+       .doc = "mean HDR-FLIP, the difference that a person sees: 0 to 1 (docs/numbers.md)",
+       .label = "FLIP"},
       {.value = ErrorMetric::est_rmse,
        .name = "est_rmse",
        .doc = "rmse estimated from two independent halves; needs no reference",
@@ -83,14 +87,14 @@ constexpr const ErrorMetricRow& row_of(ErrorMetric metric) {
 
 constexpr bool needs_reference(ErrorMetric metric) { return row_of(metric).needs_reference; }
 
-/// Number of metrics that need a reference; these come first.
-inline constexpr std::size_t reference_metrics = static_cast<std::size_t>(std::ranges::count_if(
-    error_metrics, [](const ErrorMetricRow& row) { return row.needs_reference; }));
+/// Number of metrics that are means of terms; these come first.
+inline constexpr std::size_t mean_metrics = static_cast<std::size_t>(std::ranges::count_if(
+    error_metrics, [](const ErrorMetricRow& row) { return row.term != nullptr; }));
 
 static_assert([] {
   for (std::size_t i = 0; i < error_metrics.size(); ++i) {
     if (static_cast<std::size_t>(error_metrics[i].value) != i) return false;
-    if (error_metrics[i].needs_reference != (i < reference_metrics)) return false;
+    if ((error_metrics[i].term != nullptr) != (i < mean_metrics)) return false;
   }
   return true;
 }());

@@ -1,5 +1,5 @@
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, statSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
@@ -174,6 +174,18 @@ test("compare: equal pictures, different ones, other sizes", async (t) => {
   const different = await run(folder, "compare", "a.job/image.exr", "b.job/image.exr", "--block", "4");
   assert.match(different.out, /^mse +[0-9.e-]*[1-9]/m);
   assert.match(different.out, /z_deviation/);
+  assert.match(same.out, /^flip +0$/m);
+  assert.match(same.out, /^display_flip 0$/m);
+  assert.match(different.out, /^flip +0\.[0-9]*[1-9]/m);
+  const map = async (...rest) => run(folder, "compare", "a.job/image.exr", "b.job/image.exr", "--map", ...rest);
+  assert.match((await map("map.png")).out, /^map_largest 1$/m);
+  assert.equal(readFileSync(join(folder, "map.png")).readUInt32BE(16), 24, "its width");
+  assert.equal((await map("map.exr", "--metric", "mse")).code, 0);
+  assert.ok(statSync(join(folder, "map.exr")).size > 0);
+  assert.match((await map("map.jpg")).err, /"map\.jpg" is no \.png or \.exr/);
+  const unknown = await map("map.png", "--metric", "psnr");
+  assert.equal(unknown.code, 2);
+  assert.match(unknown.err, /psnr.*flip/s);
   // The sum of the squared differences of the whole is that of its halves.
   const mse = async (...crop) => {
     const { out, err } = await run(folder, "compare", "a.job/image.exr", "b.job/image.exr", ...crop);

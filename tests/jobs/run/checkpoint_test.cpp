@@ -59,7 +59,7 @@ TEST_F(Checkpoint, ComesBack) {
 TEST_F(Checkpoint, IsAsItWasWrittenInOnePiece) {
   write(content);
   ByteWriter expected;
-  expected.put(std::string_view("lacuna-checkpoint-4"));
+  expected.put(std::string_view("lacuna-checkpoint-5"));
   expected.put(std::string_view("key"));
   expected.put(std::uint64_t{XXH3_64bits(content.data(), content.size())});
   expected.put(std::string_view(content));

@@ -47,15 +47,16 @@ TEST(Curve, CsvLeavesOutWhatIsNotKnown) {
   curve.add(r);
   r.iteration = 2;
   r.errors = Errors{0.1, 0.5, 0.25, 3, 4};
+  r.flip = 0.75;
   r.est_rmse = 0.125;
   r.at_floor = true;
   r.longest_seconds = 0.25;
   curve.add(r);
   EXPECT_EQ(curve.csv(),
             "iteration,seconds,cpu_seconds,samples,rays,shadow_rays,mae,rmse,mse,relmse,smape,"
-            "est_rmse,negative,rejected,at_floor,longest_seconds\n"
-            "1,0.5,0,0,7,0,,,,,,,0,0,0,0\n"
-            "2,0.5,0,0,7,0,0.10000000000000001,0.5,0.25,3,4,0.125,0,0,1,0.25\n");
+            "flip,est_rmse,negative,rejected,at_floor,longest_seconds\n"
+            "1,0.5,0,0,7,0,,,,,,,,0,0,0,0\n"
+            "2,0.5,0,0,7,0,0.10000000000000001,0.5,0.25,3,4,0.75,0.125,0,0,1,0.25\n");
 }
 
 TEST(Curve, ComesBackFromACheckpoint) {
@@ -64,6 +65,7 @@ TEST(Curve, ComesBackFromACheckpoint) {
   CurveRow r = row(2, 1);
   r.counters = {1, 2, 3, 4, 5};
   r.errors = Errors{0.1, 0.5, 0.25, 3, 4};
+  r.flip = 0.75;
   r.est_rmse = 0.125;
   r.at_floor = true;
   r.longest_seconds = 0.25;
