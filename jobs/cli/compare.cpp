@@ -31,9 +31,9 @@ struct CompareOptions {
 };
 
 /// Throws SceneError if the requested rectangle is not inside the picture.
-Crop crop_of(const CompareOptions& o, const FloatImage& image) {
+PixelRect crop_of(const CompareOptions& o, const FloatImage& image) {
   if (o.crop.empty()) return {0, 0, image.width, image.height};
-  const Crop c{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
+  const PixelRect c{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
   if (!is_inside(c, image.width, image.height)) {
     throw SceneError(fmt::format("--crop {} {} {} {} is not inside the pictures, {} x {}", c.x, c.y,
                                  c.width, c.height, image.width, image.height));
@@ -42,7 +42,8 @@ Crop crop_of(const CompareOptions& o, const FloatImage& image) {
 }
 
 /// The rectangle's values, three per pixel. Throws SceneError, with `label`, if one is not finite.
-std::vector<double> in_double(const FloatImage& image, const Crop& crop, const std::string& label) {
+std::vector<double> in_double(const FloatImage& image, const PixelRect& crop,
+                              const std::string& label) {
   const FloatImage part{crop.width, crop.height, cut(image.rgb, image.width, crop), {}};
   require_finite(part, label);
   return {part.rgb.begin(), part.rgb.end()};
@@ -55,7 +56,7 @@ double mean(const std::vector<double>& values) {
 }
 
 /// Variance of a - b, from the known layers; empty: A has no such layer.
-std::vector<double> variance_of_difference(const CompareOptions& o, const Crop& crop) {
+std::vector<double> variance_of_difference(const CompareOptions& o, const PixelRect& crop) {
   std::vector<double> sum;
   for (const auto& file : {o.a, o.b}) {
     FloatImage layer;
@@ -74,7 +75,7 @@ std::vector<double> variance_of_difference(const CompareOptions& o, const Crop& 
   return sum;
 }
 
-void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<double>& a,
+void print_blocks(const CompareOptions& o, const PixelRect& crop, const std::vector<double>& a,
                   const std::vector<double>& b) {
   if (o.block > std::min(crop.width, crop.height)) {
     throw SceneError(fmt::format("--block {} is larger than the compared area, {} x {}", o.block,
@@ -151,7 +152,7 @@ void compare(CompareOptions o) {
                                  image_a.height, o.b.string(), image_b.width, image_b.height));
   }
   warn_of_other_scenes(o, image_a, image_b);
-  const Crop crop = crop_of(o, image_a);
+  const PixelRect crop = crop_of(o, image_a);
   const std::string where = o.crop.empty() ? "" : ", in the crop";
   const std::vector<double> a = in_double(image_a, crop, o.a.string() + where);
   const std::vector<double> b = in_double(image_b, crop, o.b.string() + where);

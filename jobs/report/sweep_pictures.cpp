@@ -21,10 +21,10 @@ using Pixels = std::vector<double>;
 constexpr int crop_side = 96;
 
 /// Squared errors of a picture in each of a grid's rectangles.
-std::vector<double> errors_of(const std::vector<Crop>& grid, const Pixels& picture,
+std::vector<double> errors_of(const std::vector<PixelRect>& grid, const Pixels& picture,
                               const Pixels& reference, int width) {
   std::vector<double> sums;
-  for (const Crop& r : grid) {
+  for (const PixelRect& r : grid) {
     const Pixels a = cut(picture, width, r), b = cut(reference, width, r);
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -90,7 +90,7 @@ class PictureReader {
     if (reference_) errors_.push_back(errors_of(grid_, pixels, reference_->rgb, width));
   }
 
-  Crop choose_crop() const {
+  PixelRect choose_crop() const {
     if (errors_.empty()) return grid_[grid_.size() / 2];
     std::size_t best = 0;
     double largest = -1;
@@ -107,7 +107,7 @@ class PictureReader {
   }
 
   void cut_crops() {
-    const Crop r = choose_crop();
+    const PixelRect r = choose_crop();
     double exposure = reference_ ? preview_exposure(cut(reference_->rgb, width_, r)) : 0;
     const auto png = [&](const Pixels& part) {
       if (exposure == 0) exposure = preview_exposure(part);
@@ -133,7 +133,7 @@ class PictureReader {
   std::optional<Reference> reference_;
   std::string tried_;
   std::map<std::size_t, std::size_t> firsts_;  // run, by cell
-  std::vector<Crop> grid_;
+  std::vector<PixelRect> grid_;
   std::vector<std::vector<double>> errors_;  // of each first run, in the grid
   int width_ = 0;
 };

@@ -6,13 +6,13 @@
 namespace lacuna {
 
 /// A rectangle of pixels, from the upper left of a picture.
-struct Crop {
+struct PixelRect {
   int x = 0, y = 0, width = 0, height = 0;
-  bool operator==(const Crop&) const = default;
+  bool operator==(const PixelRect&) const = default;
 };
 
 /// Whether the rectangle has pixels and lies in a picture of this size.
-inline bool is_inside(const Crop& c, int width, int height) {
+inline bool is_inside(const PixelRect& c, int width, int height) {
   return c.x >= 0 && c.y >= 0 && c.width > 0 && c.height > 0 && c.x <= width - c.width &&
          c.y <= height - c.height;
 }
@@ -20,7 +20,7 @@ inline bool is_inside(const Crop& c, int width, int height) {
 /// The rectangle's part of `pixels`, three values for each, of a picture with `width` columns, in
 /// which it must lie.
 template <class T>
-std::vector<T> cut(const std::vector<T>& pixels, int width, const Crop& c) {
+std::vector<T> cut(const std::vector<T>& pixels, int width, const PixelRect& c) {
   std::vector<T> part;
   part.reserve(3 * static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height));
   for (int y = c.y; y < c.y + c.height; ++y) {
@@ -32,6 +32,6 @@ std::vector<T> cut(const std::vector<T>& pixels, int width, const Crop& c) {
 
 /// Rectangles of `width` x `height` in a picture of `columns` x `rows`, half a side apart. They are
 /// smaller where the picture is.
-std::vector<Crop> crop_grid(int columns, int rows, int width, int height);
+std::vector<PixelRect> crop_grid(int columns, int rows, int width, int height);
 
 }  // namespace lacuna
