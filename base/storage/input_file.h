@@ -12,16 +12,17 @@
 namespace lacuna {
 
 /// The role of a file among the inputs of a result.
-enum class InputRole { scene, buffer, texture, environment, reference };
+enum class InputRole { scene, buffer, texture, environment, reference, picture };
 
 template <>
 struct EnumTable<InputRole> {
-  static constexpr std::array<EnumValue<InputRole>, 5> values{{
+  static constexpr std::array<EnumValue<InputRole>, 6> values{{
       {InputRole::scene, "scene", "the scene file"},
       {InputRole::buffer, "buffer", "a file of vertices that the scene names"},
       {InputRole::texture, "texture", "an image that the scene names"},
       {InputRole::environment, "environment", "the image of the environment"},
       {InputRole::reference, "reference", "the picture that errors are measured against"},
+      {InputRole::picture, "picture", "a picture that another program has rendered"},
   }};
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/storage/input_file.h"
-#include "jobs/import/picture_formats.h"
+#include "jobs/import/tga_picture.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/film/preview.h"
 #include "renderer/images/guards.h"
@@ -59,8 +59,7 @@ InputBytes bytes_of(const ImportedTexture& t) {
 float one_channel(const Rgb& rgb, int channel) { return rgb[std::min(channel, 2)]; }
 
 LinearPicture float_picture(const ImportedTexture& t) {
-  const FloatImage image =
-      kind_of(t.file) == ".pfm" ? read_pfm(bytes_of(t), t.file.string()) : read_float_image(t.file);
+  const FloatImage image = read_float_image(t.file);
   require_finite(image, t.file.string());
   if (t.channel == 3) {
     throw SceneError(t.place + ": the alpha of an EXR is not read: " + t.file.string());

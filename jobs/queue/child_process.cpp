@@ -98,6 +98,11 @@ struct AbsoluteLimits {
   ::_exit(127);
 }
 
+double seconds_of(const rusage& used) {
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
 }  // namespace
 
 std::mutex& fork_mutex() {
@@ -166,15 +171,21 @@ void ChildProcess::signal(int number) const { ::kill(-pid_, number); }
 Ending ChildProcess::reap() {
   signal(SIGKILL);  // the leader is dead but still holds the group's number
   int status = 0;
-  ::waitpid(pid_, &status, 0);
+  rusage used{};
+  ::wait4(pid_, &status, 0, &used);
+  double cpu_seconds = seconds_of(used);
+  // Orphans of the group, if this process adopts them (PR_SET_CHILD_SUBREAPER).
+  while (::wait4(-pid_, nullptr, 0, &used) > 0) cpu_seconds += seconds_of(used);
   pid_ = -1;
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
     return {Ending::Kind::killed, number,
-            fmt::format("renderer ended by signal {} ({})", number, ::strsignal(number))};
+            fmt::format("renderer ended by signal {} ({})", number, ::strsignal(number)),
+            cpu_seconds};
   }
   const int code = WEXITSTATUS(status);
-  return {Ending::Kind::exited, code, fmt::format("renderer ended with exit code {}", code)};
+  return {Ending::Kind::exited, code, fmt::format("renderer ended with exit code {}", code),
+          cpu_seconds};
 }
 
 std::string why_it_cannot_begin(Command command, const Ending& end, const StopSignal& stop) {

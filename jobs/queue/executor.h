@@ -24,7 +24,8 @@ struct Ending {
   /// exited, out_of_memory: exit code (128 + SIGKILL if killed); killed: signal; not_started:
   /// errno; lost, refused: exit code, or 0 if there is none
   int code = 0;
-  std::string reason;  ///< "renderer ended by signal 9 (Killed)"
+  std::string reason;      ///< "renderer ended by signal 9 (Killed)"
+  double cpu_seconds = 0;  ///< of a child and its descendants that ended (ChildProcess)
 };
 
 /// Whether the program never began: it is missing, cannot be executed, or lacks a library (the exit

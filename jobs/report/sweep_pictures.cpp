@@ -120,8 +120,7 @@ class PictureReader {
       const auto image = read(run);
       if (!image) continue;
       const Pixels pixels(image->rgb.begin(), image->rgb.end());
-      crops.cells.push_back(
-          {cell, answers_.results[run].curve.points().back().time, png(cut(pixels, width_, r))});
+      crops.cells.push_back({cell, answers_.results[run].end->time, png(cut(pixels, width_, r))});
     }
     out_.crops.push_back(std::move(crops));
   }

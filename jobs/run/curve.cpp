@@ -8,7 +8,9 @@ namespace lacuna {
 
 namespace {
 
-std::string number(std::optional<double> v) { return v ? fmt::format("{:.17g}", *v) : ""; }
+std::string number(std::optional<double> v) {
+  return v && !std::isnan(*v) ? fmt::format("{:.17g}", *v) : "";
+}
 
 /// A flag as a byte: any other value of a bool would be undefined.
 bool get_flag(ByteReader& in) {
@@ -40,7 +42,9 @@ bool Curve::due(double seconds) const {
 }
 
 void Curve::add(const CurveRow& row) {
-  if (!rows_.empty() && rows_.back().iteration == row.iteration) rows_.pop_back();
+  if (row.iteration > 0 && !rows_.empty() && rows_.back().iteration == row.iteration) {
+    rows_.pop_back();
+  }
   rows_.push_back(row);
 }
 
@@ -49,10 +53,12 @@ std::string Curve::csv() const {
   for (const ErrorMetricRow& metric : error_metrics) text += fmt::format("{},", metric.name);
   text += "negative,rejected,at_floor,longest_seconds\n";
   for (const CurveRow& r : rows_) {
-    text += fmt::format("{},{},{},{},{},{},", r.iteration, number(r.seconds), number(r.cpu_seconds),
-                        r.counters.samples, r.counters.rays, r.counters.shadow_rays);
+    const auto count = [&](std::uint64_t n) { return r.iteration > 0 ? fmt::format("{}", n) : ""; };
+    text += fmt::format("{},{},{},{},{},{},", count(r.iteration), number(r.seconds),
+                        number(r.cpu_seconds), count(r.counters.samples), count(r.counters.rays),
+                        count(r.counters.shadow_rays));
     for (const ErrorMetricRow& metric : error_metrics) text += number(r.value(metric.value)) + ',';
-    text += fmt::format("{},{},{},{}\n", r.counters.negative, r.counters.rejected,
+    text += fmt::format("{},{},{},{}\n", count(r.counters.negative), count(r.counters.rejected),
                         r.at_floor ? 1 : 0, number(r.longest_seconds));
   }
   return text;

@@ -12,8 +12,8 @@ namespace lacuna {
 
 /// The costs and errors of a job at one instant.
 struct CurveRow {
-  std::uint64_t iteration = 0;
-  double seconds = 0, cpu_seconds = 0;  ///< render time; CPU divided by threads
+  std::uint64_t iteration = 0;          ///< 0: of another program, which counts nothing
+  double seconds = 0, cpu_seconds = 0;  ///< render time; CPU divided by threads; NaN: not known
   double longest_seconds = 0;           ///< as in Spent
   Counters counters;
   std::optional<Errors> errors;  ///< against the reference, if there is one

@@ -32,7 +32,6 @@ std::optional<std::vector<std::string>> InputCheck::changes(const JobFolder& fol
   return changed_inputs(*recorded, files);
 }
 
-/// The present file; without size and hash if it is missing or not of its type.
 InputFile InputCheck::now(const InputFile& recorded, const std::string& scene) {
   InputFile file;
   try {
@@ -53,7 +52,6 @@ InputFile InputCheck::now(const InputFile& recorded, const std::string& scene) {
   return file;
 }
 
-/// The path from which the job or its scene reads it.
 std::filesystem::path InputCheck::find(const InputFile& recorded, const std::string& scene) const {
   const auto scene_file = [&] { return scenes_.resolve(scene, scene_extensions); };
   switch (recorded.role) {
@@ -65,6 +63,7 @@ std::filesystem::path InputCheck::find(const InputFile& recorded, const std::str
     case InputRole::environment:
       return scenes_.resolve(recorded.name, environment_extensions);
     case InputRole::reference:
+    case InputRole::picture:
       break;
   }
   return reference_file(recorded.name, data_, scenes_);

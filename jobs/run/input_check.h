@@ -21,11 +21,13 @@ class InputCheck {
   /// none if its inputs are not recorded. Throws InputUnreadable and the exceptions of
   /// JobFolder::read_state() and read_inputs().
   std::optional<std::vector<std::string>> changes(const JobFolder& folder);
-
- private:
+  /// The recorded file as it is now: without size and hash if it is missing or not of its type.
   InputFile now(const InputFile& recorded, const std::string& scene);
+  /// The path from which a job of the scene `scene` reads it. Throws SceneError,
+  /// std::invalid_argument.
   std::filesystem::path find(const InputFile& recorded, const std::string& scene) const;
 
+ private:
   DataRoot data_;
   ScenesRoots scenes_;
   std::map<std::filesystem::path, InputFile> measured_;

@@ -1,5 +1,6 @@
 #include "jobs/run/machine_watch.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,8 +8,6 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-
-#include "jobs/run/clock.h"
 
 namespace lacuna {
 namespace {
@@ -33,6 +32,19 @@ std::optional<double> mean_mhz() {
   return n > 0 && sum > 0 ? std::optional(sum / n) : std::nullopt;
 }
 
+/// CPU seconds of this process and of its children that have ended.
+double own_seconds() {
+  double all = 0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    ::getrusage(who, &used);
+    for (const timeval& t : {used.ru_utime, used.ru_stime}) {
+      all += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 std::optional<ProcessorTicks> parse_processor_ticks(std::string_view stat) {
@@ -51,8 +63,7 @@ std::optional<ProcessorTicks> parse_processor_ticks(std::string_view stat) {
   return sum;
 }
 
-MachineWatch::MachineWatch()
-    : began_(processor_ticks()), own_began_(clock_seconds(CLOCK_PROCESS_CPUTIME_ID)) {}
+MachineWatch::MachineWatch() : began_(processor_ticks()), own_began_(own_seconds()) {}
 
 std::optional<Disturbance> MachineWatch::disturbance() const {
   const auto now = processor_ticks();
@@ -60,8 +71,7 @@ std::optional<Disturbance> MachineWatch::disturbance() const {
   if (!began_ || !now || now->all - began_->all < few) return {};
   const double all = now->all - began_->all;
   const double idle = now->idle - began_->idle, stolen = now->stolen - began_->stolen;
-  const double own = (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - own_began_) *
-                     static_cast<double>(::sysconf(_SC_CLK_TCK));
+  const double own = (own_seconds() - own_began_) * static_cast<double>(::sysconf(_SC_CLK_TCK));
   Disturbance d;
   d.stolen = std::clamp(stolen / all, 0.0, 1.0);
   d.others = std::clamp((all - idle - stolen - own) / all, 0.0, 1.0);

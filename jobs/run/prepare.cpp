@@ -129,7 +129,8 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   if (!context.trace.empty()) p.pool->log().keep_spans();
   const WorkSection section(*p.pool, "load");
   const bool chooses = std::holds_alternative<AutoSettings>(spec.integrator);
-  if (!chooses) p.integrator = make_integrator(method_of(spec.integrator));
+  const bool foreign = std::holds_alternative<ForeignSettings>(spec.integrator);
+  if (!chooses && !foreign) p.integrator = make_integrator(method_of(spec.integrator));
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs,
                              {spec.time, spec.animation, spec.variant, spec.light_units});
   p.inputs.front().name = spec.scene;
@@ -148,7 +149,12 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   }
   p.content = fmt::format("{:016x}", data.content_hash);
 
-  const SceneNeeds needs = chooses ? needs_of_candidates(spec) : needs_of(spec, *p.integrator);
+  SceneNeeds needs;
+  if (chooses) {
+    needs = needs_of_candidates(spec);
+  } else if (!foreign) {
+    needs = needs_of(spec, *p.integrator);
+  }
   if (spec.environment && data.environment) {
     p.warnings.emplace_back(
         "the file's EXT_lights_image_based is left out: the job names an environment");

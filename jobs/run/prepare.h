@@ -12,7 +12,7 @@ namespace lacuna {
 /// Scene, camera and integrator of a job, ready to render.
 struct Prepared {
   std::unique_ptr<ThreadPool> pool;
-  std::unique_ptr<Integrator> integrator;  ///< null for a job of `auto` (Choosing)
+  std::unique_ptr<Integrator> integrator;  ///< null for a job of `auto` or `foreign`
   std::unique_ptr<Scene> scene;
   std::unique_ptr<Camera> camera;
   std::string camera_name;  ///< of the camera used, also if the job names none

@@ -10,7 +10,7 @@ namespace lacuna {
 
 namespace {
 
-using Values = std::vector<double>;
+using PixelValues = std::vector<double>;
 
 /// Square blocks of pixels, which average the noise of a picture's brightness.
 struct Blocks {
@@ -27,8 +27,8 @@ struct Blocks {
     return std::size_t(y / side * across() + x / side);
   }
   /// The means over pixels and channels.
-  Values means(const Values& rgb) const {
-    Values sums(count()), numbers(count());
+  PixelValues means(const PixelValues& rgb) const {
+    PixelValues sums(count()), numbers(count());
     for (std::size_t i = 0; i < rgb.size(); ++i) {
       sums[of_pixel(i / 3)] += rgb[i];
       numbers[of_pixel(i / 3)] += 1;
@@ -39,10 +39,10 @@ struct Blocks {
 };
 
 /// The lower median of a pixel over the pictures, robust to an outlier of one; 0 for one picture.
-double lower_median(const std::vector<Values>& pictures, std::size_t i) {
+double lower_median(const std::vector<PixelValues>& pictures, std::size_t i) {
   if (pictures.size() < 2) return 0;
-  Values all;
-  for (const Values& p : pictures) all.push_back(p[i]);
+  PixelValues all;
+  for (const PixelValues& p : pictures) all.push_back(p[i]);
   const auto middle = all.begin() + std::ptrdiff_t((all.size() - 1) / 2);
   std::nth_element(all.begin(), middle, all.end());
   return *middle;
@@ -51,15 +51,15 @@ double lower_median(const std::vector<Values>& pictures, std::size_t i) {
 /// The scale of comparison: the mean brightness of each block over all pictures, and the divisors
 /// of squared errors, per block and per value of a pixel.
 struct Scale {
-  Values brightness, block_divisor, divisor;
+  PixelValues brightness, block_divisor, divisor;
 
-  Scale(const Blocks& blocks, const std::vector<Values>& means,
-        const std::vector<Values>& block_means, RankingMetric metric)
+  Scale(const Blocks& blocks, const std::vector<PixelValues>& means,
+        const std::vector<PixelValues>& block_means, RankingMetric metric)
       : brightness(blocks.count()),
         block_divisor(blocks.count(), 1),
         divisor(means.front().size(), 1) {
     for (std::size_t k = 0; k < brightness.size(); ++k) {
-      for (const Values& m : block_means) brightness[k] += m[k] / double(block_means.size());
+      for (const PixelValues& m : block_means) brightness[k] += m[k] / double(block_means.size());
     }
     if (metric == RankingMetric::mse) return;
     for (std::size_t k = 0; k < brightness.size(); ++k) block_divisor[k] = over(brightness[k]);
@@ -69,12 +69,12 @@ struct Scale {
     }
   }
 
-  double distance(const Values& a, const Values& b) const {
+  double distance(const PixelValues& a, const PixelValues& b) const {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += squared_error(a[i], b[i]) / divisor[i];
     return sum / double(a.size());
   }
-  double missing(const Values& block_means) const {
+  double missing(const PixelValues& block_means) const {
     double sum = 0;
     for (std::size_t k = 0; k < brightness.size(); ++k) {
       if (block_means[k] >= brightness[k] / 2) continue;
@@ -87,7 +87,7 @@ struct Scale {
   static double over(double r) { return r * r + 0.01; }
 };
 
-bool is_dark(const Values& values) {
+bool is_dark(const PixelValues& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
 }
 
@@ -99,7 +99,7 @@ std::optional<double> noise_from_halves(const Film& film, const Scale& scale) {
 }
 
 /// The noise of picture `k` from its distances to the others.
-std::optional<double> noise_from_others(const std::vector<Values>& means, std::size_t k,
+std::optional<double> noise_from_others(const std::vector<PixelValues>& means, std::size_t k,
                                         const Scale& scale) {
   std::vector<std::pair<double, std::size_t>> others;
   for (std::size_t j = 0; j < means.size(); ++j) {
@@ -117,7 +117,7 @@ std::optional<double> noise_from_others(const std::vector<Values>& means, std::s
 std::vector<std::optional<PictureError>> picture_errors(std::span<const CandidatePicture> pictures,
                                                         RankingMetric metric) {
   const Blocks blocks(*pictures.front().film);
-  std::vector<Values> means, block_means;
+  std::vector<PixelValues> means, block_means;
   for (const CandidatePicture& p : pictures) {
     means.push_back(p.film->mean());
     block_means.push_back(blocks.means(means.back()));

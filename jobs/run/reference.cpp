@@ -13,7 +13,7 @@ namespace lacuna {
 
 namespace {
 
-const std::vector<std::string_view> reference_extensions{".exr", ".tif", ".tiff"};
+const std::vector<std::string_view> reference_extensions{".exr", ".hdr", ".pfm", ".tif", ".tiff"};
 
 bool is_image_file(const std::string& name) {
   return std::any_of(reference_extensions.begin(), reference_extensions.end(),
@@ -70,10 +70,10 @@ std::filesystem::path reference_file(const std::string& name, const DataRoot& da
   }
   const auto file = data.references() / name / "image.exr";
   if (is_plain_name(name) && is_there(file)) return file;
-  throw SceneError(
-      fmt::format("reference \"{}\": neither \"auto\", nor an .exr or .tif below a scenes root, "
-                  "nor a job's id, nor a folder in {}",
-                  name, data.references().string()));
+  throw SceneError(fmt::format(
+      "reference \"{}\": neither \"auto\", nor an .exr, .hdr, .pfm or .tif below a scenes root, "
+      "nor a job's id, nor a folder in {}",
+      name, data.references().string()));
 }
 
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes) {

@@ -19,9 +19,9 @@ struct Reference {
   InputFile input = {};             ///< that file as it was read
 };
 
-/// The picture that a job names as its reference (not "auto" or empty): an EXR or a TIFF of floats
-/// below a scenes root, a job's id, or the name of a folder below the references. Throws SceneError
-/// if it is missing; InputUnreadable.
+/// The picture that a job names as its reference (not "auto" or empty): an EXR, Radiance HDR, PFM
+/// or TIFF of floats below a scenes root, a job's id, or the name of a folder below the references.
+/// Throws SceneError if it is missing; InputUnreadable.
 std::filesystem::path reference_file(const std::string& name, const DataRoot& data,
                                      const ScenesRoots& scenes);
 

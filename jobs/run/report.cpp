@@ -1,4 +1,5 @@
 #include "jobs/run/report.h"
+#include "jobs/run/report_parts.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -19,8 +20,6 @@ namespace lacuna {
 
 namespace {
 
-OrderedJson optional(std::optional<double> v) { return v ? OrderedJson(*v) : OrderedJson(nullptr); }
-
 OrderedJson seconds(const PhaseSeconds& phases, const Spent& spent) {
   OrderedJson j;
   for (const auto& [name, value] : phases) j[name] = value;
@@ -35,8 +34,8 @@ OrderedJson budget(const RenderTask& task, const Spent& spent) {
     const auto found = task.phases.find(name);
     return found == task.phases.end() ? 0.0 : found->second;
   };
-  return {{"seconds", optional(task.spec.budget.seconds)},
-          {"cpu_seconds", optional(task.spec.budget.cpu_seconds)},
+  return {{"seconds", number_or_null(task.spec.budget.seconds)},
+          {"cpu_seconds", number_or_null(task.spec.budget.cpu_seconds)},
           {"render_seconds", spent.seconds},
           {"preparation_seconds", phase("load") + phase("analysis")}};
 }
@@ -95,18 +94,13 @@ OrderedJson errors_json(const RenderTask& task, const RenderLoop& loop) {
   j["biased"] = biased(task.spec.integrator);
   const CurveRow& row = curve.rows().back();
   for (const ErrorMetricRow& metric : error_metrics) {
-    j[std::string(metric.name)] = optional(row.value(metric.value));
+    j[std::string(metric.name)] = number_or_null(row.value(metric.value));
   }
   j["est_rmse_tail"] = tail_json(error_tail(loop.film()));
   const double mse = row.value(ErrorMetric::mse).value_or(0);
   if (mse > 0) j["efficiency"] = 1 / (mse * row.seconds);
   if (task.reference != nullptr) {
-    j["reference"] = {
-        {"name", task.reference->name},
-        {"file", std::filesystem::absolute(task.reference->file).string()},
-        {"own_rmse",
-         task.reference->mse ? OrderedJson(std::sqrt(*task.reference->mse)) : OrderedJson(nullptr)},
-        {"at_floor", row.at_floor}};
+    j["reference"] = reference_json(*task.reference, row.at_floor);
   }
   return j;
 }
@@ -119,7 +113,7 @@ OrderedJson merged_json(const RenderLoop& loop) {
           {"longest_seconds", loop.spent().longest_seconds},
           {"same_bits_as_one_machine", loop.same_bits_as_one()},
           {"learned_apart", merged.learned == 1},
-          {"est_rmse", optional(estimated_rmse(merged))}};
+          {"est_rmse", number_or_null(estimated_rmse(merged))}};
 }
 
 /// How parallel this process was, by section.
@@ -138,20 +132,6 @@ OrderedJson threads(const ThreadPool& pool) {
                       {"bodies", times.bodies}};
   }
   return {{"serial_seconds", serial}, {"waiting_seconds", waiting}, {"sections", sections}};
-}
-
-OrderedJson machine(const ThreadPool& pool, const std::optional<Disturbance>& disturbance) {
-  OrderedJson j{{"processor", processor_name()},
-                {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
-                {"threads", pool.threads()},
-                {"peak_memory_bytes", peak_memory()}};
-  if (disturbance) {
-    j["others_share"] = disturbance->others;
-    j["stolen_share"] = disturbance->stolen;
-    j["load"] = disturbance->load;
-    j["mhz"] = optional(disturbance->mhz);
-  }
-  return j;
 }
 
 /// When the image module was loaded, seconds from the job's start (negative: by an earlier job of
@@ -192,7 +172,7 @@ std::string write_report(const ReportInput& input) {
   j["artefacts"] = artefacts_json(input.artefacts);
   j["warnings"] = input.warnings;
   j["threads"] = threads(task.pool);
-  j["machine"] = machine(task.pool, input.disturbance);
+  j["machine"] = machine_json(task.pool.threads(), input.disturbance);
   return document_text(j);
 }
 

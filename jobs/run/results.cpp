@@ -107,18 +107,19 @@ std::map<std::string, std::string> attributes(const RenderTask& task, const Rend
 }
 
 /// Writes layers.half, then its index layers.json.
-void write_half_layers(const RenderTask& task, const std::vector<ExrLayer>& layers) {
-  AtomicFile file(task.folder.file("layers.half"));
+void write_half_layers(const JobFolder& folder, const ExrPicture& picture,
+                       const std::function<void()>& between) {
+  AtomicFile file(folder.file("layers.half"));
   ByteWriter out([&](std::string_view piece) {
     file.write(piece);
-    task.stop_if_late();
+    between();
   });
-  const std::vector<HalfLayer> entries = pack_half(layers, out);
+  const std::vector<HalfLayer> entries = pack_half(picture.layers, out);
   out.flush();
   file.commit();
   OrderedJson index;
-  index["width"] = task.spec.resolution[0];
-  index["height"] = task.spec.resolution[1];
+  index["width"] = picture.width;
+  index["height"] = picture.height;
   for (const HalfLayer& l : entries) {
     index["layers"].push_back({{"name", l.name},
                                {"channels", l.channels},
@@ -126,15 +127,25 @@ void write_half_layers(const RenderTask& task, const std::vector<ExrLayer>& laye
                                {"bytes", l.bytes},
                                {"scale", l.scale}});
   }
-  write_file_atomically(task.folder.file("layers.json"), document_text(index));
+  write_file_atomically(folder.file("layers.json"), document_text(index));
 }
 
 }  // namespace
 
+void write_pictures(const JobFolder& folder, ExrPicture picture, const Reference* reference,
+                    const std::function<void()>& between) {
+  if (reference != nullptr) picture.layers.push_back({"reference", rgb, {}, reference->rgb});
+  write_half_layers(folder, picture, between);
+  if (reference != nullptr) picture.layers.pop_back();
+  write_preview(folder.file("image.png"), picture.width, picture.height,
+                picture.layers.front().values);
+  scale_variance(picture.layers, picture.type, picture.attributes);
+  write_exr(folder.file("image.exr"), picture, between);
+}
+
 void write_results(const RenderTask& task, const RenderLoop& loop) {
   const Film& film = loop.film();
-  const std::vector<double> mean = film.mean();
-  std::vector<ExrLayer> layers{{"", rgb, {}, mean}};
+  std::vector<ExrLayer> layers{{"", rgb, film.mean()}};
   for (const ImageLayer layer : task.spec.layers) {
     add_layer(task, film, layer, layers);
     task.stop_if_late();
@@ -143,16 +154,10 @@ void write_results(const RenderTask& task, const RenderLoop& loop) {
   for (std::size_t i = 0; i < own.names().size(); ++i) {
     layers.push_back({own.names()[i], rgb, {}, own.sum(i), own.divisor()});
   }
-  if (task.reference != nullptr) layers.push_back({"reference", rgb, {}, task.reference->rgb});
-  write_half_layers(task, layers);
-  if (task.reference != nullptr) layers.pop_back();
-  std::map<std::string, std::string> header = attributes(task, loop);
-  scale_variance(layers, task.spec.pixel_type, header);
-  write_exr(
-      task.folder.file("image.exr"),
-      {film.width(), film.height(), std::move(layers), task.spec.pixel_type, std::move(header)},
-      [&] { task.stop_if_late(); });
-  write_preview(task.folder.file("image.png"), film.width(), film.height(), mean);
+  write_pictures(task.folder,
+                 {film.width(), film.height(), std::move(layers), task.spec.pixel_type,
+                  attributes(task, loop)},
+                 task.reference, [&] { task.stop_if_late(); });
   write_file_atomically(task.folder.file("curve.csv"), loop.curve().csv());
 }
 

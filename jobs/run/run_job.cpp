@@ -3,25 +3,22 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
 #include <optional>
 #include <set>
-#include <thread>
-#include <utility>
 
 #include "analysis/space/memory_limit.h"
 #include "base/storage/atomic_file.h"
 #include "base/storage/available_memory.h"
 #include "base/storage/peak_memory.h"
 #include "jobs/run/choosing.h"
+#include "jobs/run/foreign_job.h"
 #include "jobs/run/input_check.h"
+#include "jobs/run/job_reference.h"
 #include "jobs/run/machine_watch.h"
-#include "jobs/run/obstacle.h"
-#include "jobs/run/prepare.h"
-#include "jobs/run/reference.h"
 #include "jobs/run/render_loop.h"
 #include "jobs/run/report.h"
 #include "jobs/run/results.h"
+#include "jobs/run/running.h"
 #include "jobs/run/shard_folders.h"
 #include "jobs/run/trace.h"
 #include "jobs/spec/byte_size.h"
@@ -32,115 +29,6 @@
 namespace lacuna {
 
 namespace {
-
-/// The job's state on disk and its phases' times while it runs.
-class Running {
- public:
-  Running(const JobFolder& folder, Observer& observer) : folder_(folder), observer_(observer) {
-    state_ = folder.read_state();
-    state_.state = State::running;
-    state_.attempts += 1;
-    state_.started = utc_now();
-    if (state_.created.empty()) state_.created = state_.started;
-    state_.finished.clear();
-    state_.phase.clear();
-    state_.error.clear();
-    state_.warnings.clear();
-  }
-
-  void phase(const std::string& name) {
-    // Synced once, so that no earlier end is found after a power failure.
-    const bool begins = std::exchange(state_.phase, name).empty();
-    folder_.write_state(state_, begins);
-    observer_.phase(name);
-  }
-  const std::string& phase_name() const { return state_.phase; }
-  void warn(const std::string& line) {
-    state_.warnings.push_back(line);
-    observer_.warning(line);
-  }
-  void finish(State state, const std::string& error = "") {
-    state_.state = state;
-    state_.phase.clear();
-    state_.error = error;
-    state_.finished = utc_now();
-    folder_.write_state(state_);
-  }
-  /// After an exception, which takes precedence: a failure to write the state is only a warning.
-  void stop(const std::exception& e) {
-    const bool may_go_on = obstacle_of(e) != Obstacle::none;
-    try {
-      finish(may_go_on ? State::interrupted : State::failed, reason_of(e));
-    } catch (const std::exception& second) {
-      observer_.warning(second.what());
-    }
-  }
-  const std::vector<std::string>& warnings() const { return state_.warnings; }
-
- private:
-  JobFolder folder_;
-  Observer& observer_;
-  JobState state_;
-};
-
-/// Reports a reference's progress as that of the waiting job.
-class ReferenceObserver final : public Observer {
- public:
-  ReferenceObserver(const JobFolder& job, Observer& inner) : job_(job), inner_(inner) {}
-  void phase(const std::string&) override {}
-  void progress(const Progress& p) override {
-    job_.write_progress(p);
-    inner_.progress(p);
-  }
-  void milestone(const std::string& line) override { inner_.milestone("reference: " + line); }
-  void warning(const std::string& line) override { inner_.warning("reference: " + line); }
-
- private:
-  const JobFolder& job_;
-  Observer& inner_;
-};
-
-/// Runs the job in `folder`, or waits while another process does.
-Outcome run_or_wait(const JobFolder& folder, const RunContext& context) {
-  constexpr auto pause = std::chrono::milliseconds(200);
-  while (!context.interrupted()) {
-    try {
-      return run_job(folder, context);
-    } catch (const FolderBusy&) {
-      std::this_thread::sleep_for(pause);
-    }
-  }
-  return Outcome::interrupted;
-}
-
-/// Renders the reference as a separate job, by the first process that needs it. None if
-/// interrupted.
-std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobSpec& spec,
-                                             const Prepared& prepared, const RunContext& context) {
-  // A job without a camera shares the reference of one that names the first.
-  JobSpec named = spec;
-  if (!named.camera.object) named.camera.name = prepared.camera_name;
-  const ReferenceJob job = auto_reference(named, context.data, prepared.content);
-  const auto& dir = job.folder.dir();
-  const auto read = [&] {
-    return read_reference("auto", job.folder.file("image.exr"), spec.resolution);
-  };
-  if (!std::filesystem::exists(dir)) {
-    std::filesystem::create_directories(dir.parent_path());
-    try {
-      JobFolder::create(dir, job.spec);
-    } catch (const std::invalid_argument&) {
-      // Another process created it: the lock decides which renders.
-    }
-  }
-  // Its inputs are unchanged: their hashes are in its name.
-  if (job.folder.read_state().state == State::done) return read();
-  ReferenceObserver observer(folder, context.observer);
-  const RunContext own{context.data, context.scenes, context.threads,     context.interrupted,
-                       observer,     nullptr,        context.seconds_left};
-  if (run_or_wait(job.folder, own) == Outcome::interrupted) return std::nullopt;
-  return read();
-}
 
 /// Bits are guaranteed on one machine only: libraries may select code by the processor.
 void warn_of_processors(const std::vector<Shard>& shards, Running& running) {
@@ -187,6 +75,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   PhaseSeconds phases;
   running.phase("loading");
   JobSpec spec = folder.read_job();
+  if (std::holds_alternative<ForeignSettings>(spec.integrator)) {
+    return run_foreign(folder, spec, context, running);
+  }
   std::optional<Choice> choice = choice_of(spec, folder, running);
   if (const auto chosen = chosen_job(spec, choice)) spec = *chosen;
   std::optional<std::vector<Shard>> shards;
@@ -224,11 +115,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   if (!spec.reference.empty()) {
     running.phase("reference");
     const ScopedSeconds timed(phases["reference"]);
-    if (spec.reference == "auto") {
-      reference = make_auto_reference(folder, spec, prepared, context);
-      if (!reference) return Outcome::interrupted;
-    } else {
-      reference = find_reference(spec, context.data, context.scenes);
+    reference = job_reference(folder, spec, prepared, context);
+    if (!reference) return Outcome::interrupted;
+    if (spec.reference != "auto") {
       inputs.push_back(reference->input);
       if (earlier) refuse_changed_inputs(folder, changed_inputs(*earlier, inputs));
     }

@@ -4,11 +4,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -16,24 +14,12 @@
 
 #include "base/storage/file_handle.h"
 #include "jobs/queue/child_process.h"
+#include "jobs/queue/find_program.h"
 
 namespace lacuna {
 namespace {
 
 constexpr std::chrono::seconds patience{60};
-
-/// The program's file in PATH; empty if there is none.
-std::filesystem::path find_program(const std::string& name) {
-  const char* set = std::getenv("PATH");
-  std::string_view path = set == nullptr ? "" : set;
-  while (!path.empty()) {
-    const auto end = std::min(path.find(':'), path.size());
-    std::filesystem::path file = std::filesystem::path(path.substr(0, end)) / name;
-    if (file.is_absolute() && ::access(file.c_str(), X_OK) == 0) return file;
-    path.remove_prefix(std::min(end + 1, path.size()));
-  }
-  return {};
-}
 
 std::vector<std::string> slurm_environment() {
   std::vector<std::string> result;

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <array>
-#include <stdexcept>
 #include <string_view>
-#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -86,28 +84,6 @@ void describe(V& v, AutoSettings& s) {
     {.doc = "the bias that candidates may have. It counts as error, measured as the difference to "
             "the best unbiased candidate; one must be unbiased"});
   v("metric", s.metric, {.doc = "the error by which candidates are ranked"});
-}
-
-template <class... Ts>
-std::variant<Ts..., AutoSettings> with_auto(const std::variant<Ts...>&);
-
-/// The `integrator` of a job: one of the renderer's, or `auto`.
-using JobIntegrator = decltype(with_auto(IntegratorSettings{}));
-
-/// The same without `auto`. Requires another alternative.
-inline IntegratorSettings method_of(const JobIntegrator& integrator) {
-  return std::visit(
-      []<class S>(const S& settings) -> IntegratorSettings {
-        if constexpr (std::is_same_v<S, AutoSettings>) {
-          throw std::logic_error("auto is not a method of the renderer");
-        } else {
-          return settings;
-        }
-      },
-      integrator);
-}
-inline JobIntegrator job_integrator(const IntegratorSettings& method) {
-  return std::visit([](const auto& settings) -> JobIntegrator { return settings; }, method);
 }
 
 }  // namespace lacuna

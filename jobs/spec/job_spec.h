@@ -8,7 +8,7 @@
 
 #include "analysis/settings/analysis_settings.h"
 #include "base/settings/field.h"
-#include "jobs/spec/auto_settings.h"
+#include "jobs/spec/job_integrator.h"
 #include "jobs/spec/name_or_object.h"
 #include "renderer/settings/camera_settings.h"
 #include "renderer/settings/error_metrics.h"
@@ -169,7 +169,8 @@ void describe(V& v, JobSpec& s) {
     {.doc = "when to stop; the first limit reached ends the job; none: 60 seconds"});
   v("reference", s.reference,
     {.doc = "the picture that errors are measured against: a stored reference's name, a job id, an "
-            "EXR or a TIFF of floats below a scenes root, or \"auto\" (rendered once, as two "
+            "EXR, Radiance HDR, PFM or TIFF of floats below a scenes root, or \"auto\" (rendered "
+            "once, as two "
             "independent halves, and stored); empty: none",
      .max = 1024});
   v("reference_iterations", s.reference_iterations,

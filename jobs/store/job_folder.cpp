@@ -53,6 +53,7 @@ const std::vector<FileInfo>& job_files() {
       {"layers.half", "application/octet-stream", "the layers, for viewers that read no EXR", true},
       {"layers.json", "application/json", "index of layers.half", true},
       {"curve.csv", "text/csv", "error and counts against time", true},
+      {"program.log", "text/plain", "output of another program (integrator foreign)", true},
       {"report.json", "application/json", "time and rays by phase, errors, warnings", true},
       {"checkpoint.bin", "application/octet-stream", "the state from which rendering resumes",
        false},

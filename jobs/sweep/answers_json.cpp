@@ -118,10 +118,9 @@ class Writer {
                   {"job", sweep_.folder(r).id()},
                   {"seed", sweep_.plan().job_of(r).seed},
                   {"state", enum_name(answers_.results[index].state.state)}};
-    const auto& curve = answers_.results[index].curve;
-    if (!curve.empty()) {
-      j["seconds"] = curve.points().back().time;
-      j["error"] = curve.points().back().error;
+    if (const auto& end = answers_.results[index].end) {
+      j["seconds"] = end->time;
+      j["error"] = end->error;
     }
     const auto tainted = std::find_if(answers_.tainted.begin(), answers_.tainted.end(),
                                       [&](const Tainted& t) { return t.run == index; });

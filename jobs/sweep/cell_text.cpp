@@ -54,12 +54,27 @@ VaryingSettings settings_that_vary(const SweepPlan& plan, const std::vector<std:
   return found;
 }
 
+namespace {
+
+/// A value in a cell's text: strings without quotes, another program by its name.
+std::string value_text(const OrderedJson& v, const JsonValue& value) {
+  if (v.is_string()) return v.get<std::string>();
+  const auto text_of = [&v](const char* key) -> std::string {
+    const auto found = v.is_object() ? v.find(key) : v.end();
+    return v.is_object() && found != v.end() && found->is_string() ? found->get<std::string>() : "";
+  };
+  if (text_of("type") != ForeignSettings::name || text_of("name").empty()) return value.text;
+  return text_of("name");
+}
+
+}  // namespace
+
 std::string cell_text(const JsonTable<JsonValue>& settings) {
   std::string text;
   for (const auto& [pointer, value] : settings) {
     const OrderedJson v = parse_own(value.text);
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", short_name(pointer, settings),
-                        v.is_string() ? v.get<std::string>() : value.text);
+                        value_text(v, value));
   }
   return text;
 }

@@ -86,7 +86,25 @@ double held_until(const NumberTable& table, const CurveAxes& axes, const Budget&
   return std::max(next, budget_end(budget, axes.clock));
 }
 
-ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes, const Budget& budget) {
+/// The share by which the time of another program's picture may differ from that at which it is
+/// compared; its squared error is taken to be proportional to 1 / time there.
+constexpr double near_in_time = 1.1;
+
+/// The curve of another program's pictures: extended to both sides, because separate runs never
+/// take equal times.
+ErrorCurve extended(std::vector<CurvePoint> points, ErrorMetric metric) {
+  const double rate = row_of(metric).squared ? 1 : .5;
+  CurvePoint before = points.front(), after = points.back();
+  before.time /= near_in_time, before.error *= std::pow(near_in_time, rate);
+  after.time *= near_in_time, after.error /= std::pow(near_in_time, rate);
+  const double end = after.time;
+  points.insert(points.begin(), before);
+  points.push_back(after);
+  return {std::move(points), end};
+}
+
+void read_curve(const NumberTable& table, const CurveAxes& axes, const Budget& budget,
+                RunResult& result) {
   std::vector<CurvePoint> points;
   const bool referenced = needs_reference(axes.metric);
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -95,14 +113,15 @@ ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes, const Bu
     const bool later = points.empty() || p.time > points.back().time;
     if (p.time > 0 && later && p.error > 0 && std::isfinite(p.error)) points.push_back(p);
   }
-  if (points.empty()) return {};
-  return {std::move(points), held_until(table, axes, budget)};
+  if (points.empty()) return;
+  result.end = points.back();
+  const bool foreign = std::isnan(table.at(0, "iteration"));
+  result.curve = foreign ? extended(std::move(points), axes.metric)
+                         : ErrorCurve(std::move(points), held_until(table, axes, budget));
 }
 
-std::optional<double> efficiency(const ErrorCurve& curve, ErrorMetric metric) {
-  if (curve.empty()) return {};
-  const CurvePoint& last = curve.points().back();
-  return 1 / ((row_of(metric).squared ? last.error : last.error * last.error) * last.time);
+double efficiency(const CurvePoint& end, ErrorMetric metric) {
+  return 1 / ((row_of(metric).squared ? end.error : end.error * end.error) * end.time);
 }
 
 /// A value of a JSON document, by its keys; null if it is missing.
@@ -173,9 +192,10 @@ RunResult read_result(const JobFolder& folder, const CurveAxes& axes, const Budg
   Json report = Json::object();
   if (fs::exists(folder.file("report.json"))) {
     read_report(folder.file("report.json"), report);
-    result.preparation = {number_at(report, "seconds", "load").value_or(0),
-                          number_at(report, "seconds", "analysis").value_or(0),
-                          artefact_names(report, "built"), artefact_names(report, "loaded")};
+    if (const auto load = number_at(report, "seconds", "load")) {
+      result.preparation = {*load, number_at(report, "seconds", "analysis").value_or(0),
+                            artefact_names(report, "built"), artefact_names(report, "loaded")};
+    }
     result.camera = string_at(report, "scene", "camera");
     result.reference_file = string_at(report, "errors", "reference", "file");
     result.others = number_at(report, "machine", "others_share");
@@ -186,8 +206,14 @@ RunResult read_result(const JobFolder& folder, const CurveAxes& axes, const Budg
   const NumberTable table(folder.file("curve.csv"));
   if (table.rows() == 0) return result;
   const bool done = result.state.state == State::done;
-  result.curve = error_curve(table, axes, done ? budget : Budget{});
-  result.efficiency = efficiency(result.curve, axes.metric);
+  read_curve(table, axes, done ? budget : Budget{}, result);
+  if (result.end) result.efficiency = efficiency(*result.end, axes.metric);
+  const auto last = [&](const char* column) {
+    const double value = table.at(table.rows() - 1, column);
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  };
+  result.seconds = last("seconds");
+  result.cpu_seconds = last("cpu_seconds");
   tell_bias(table, report, result);
   return result;
 }

@@ -30,9 +30,12 @@ struct RunPreparation {
 struct RunResult {
   JobState state;
   ErrorCurve curve;
-  std::optional<double> efficiency;    ///< 1 / (squared error x seconds) at its end
-  std::optional<double> bias_squared;  ///< of the last row, less the reference's noise
-  std::optional<double> variance;      ///< likewise, from the two halves
+  /// The last row with an error: that of the curve, unless it is extended (another program's).
+  std::optional<CurvePoint> end;
+  std::optional<double> seconds, cpu_seconds;  ///< render time by both clocks, at the last row
+  std::optional<double> efficiency;            ///< 1 / (squared error x seconds) at its end
+  std::optional<double> bias_squared;          ///< of the last row, less the reference's noise
+  std::optional<double> variance;              ///< likewise, from the two halves
   std::optional<RunPreparation> preparation;
   std::optional<std::string> camera;  ///< the one rendered, also where the job names none
   std::optional<std::string> reference_file;

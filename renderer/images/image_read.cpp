@@ -55,6 +55,7 @@ std::optional<ImageFormat> format_of(const ReadFile& file) {
 struct ColourChannels {
   std::vector<int> indices;  ///< three, or one for grey; empty if the layer is missing
   bool xyz = false;
+  int alpha = -1;  ///< -1: none
 };
 
 /// The index of a layer's channel; -1 if it is missing.
@@ -68,13 +69,15 @@ ColourChannels find_channels(const PictureHeader& header, const std::string& lay
   const auto index_of = [&](const char* name) { return channel_index(header, layer, name); };
   for (const auto& names : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}}) {
     const std::vector<int> indices{index_of(names[0]), index_of(names[1]), index_of(names[2])};
-    if (*std::min_element(indices.begin(), indices.end()) >= 0) return {indices, *names[0] == 'X'};
+    if (*std::min_element(indices.begin(), indices.end()) >= 0) {
+      return {indices, *names[0] == 'X', index_of("A")};
+    }
   }
   // Y alone is grey; beside these it is one channel of a colour. Z alone is depth.
   const auto parts = {"R", "G", "B", "X", "RY", "BY"};
   const bool alone =
       std::all_of(parts.begin(), parts.end(), [&](auto* p) { return index_of(p) < 0; });
-  if (alone && index_of("Y") >= 0) return {{index_of("Y")}};
+  if (alone && index_of("Y") >= 0) return {{index_of("Y")}, false, index_of("A")};
   return {};
 }
 
@@ -129,7 +132,7 @@ FloatImage read_part(PictureFile& in, std::size_t part, const ColourChannels& co
   // Not set to zero: memory is committed only as pixels arrive, however large the header's size.
   const auto stored = std::make_unique_for_overwrite<float[]>(pixels * read);
   in.read(part, colours.indices, stored.get());
-  FloatImage result{header.width, header.height, std::vector<float>(pixels * 3), {}, {}};
+  FloatImage result{header.width, header.height, std::vector<float>(pixels * 3), {}, {}, {}};
   for (const auto& [name, text] : header.texts) {
     if (name.starts_with("lacuna:")) result.attributes[name] = text;
   }
@@ -141,6 +144,11 @@ FloatImage read_part(PictureFile& in, std::size_t part, const ColourChannels& co
     float* const pixel = &result.rgb[3 * i];
     const Rgb rgb = rgb_of_xyz({pixel[0], pixel[1], pixel[2]});
     std::copy_n(&rgb.x, 3, pixel);
+  }
+  if (colours.alpha >= 0) {
+    const std::array alpha{colours.alpha};
+    in.read(part, alpha, stored.get());
+    result.least_alpha = *std::min_element(stored.get(), stored.get() + pixels);
   }
   return result;
 }
@@ -185,6 +193,26 @@ FloatImage read_as(ImageFormat format, ReadFile file, const std::string& layer) 
   }
 }
 
+bool is_pfm(const ReadFile& file) {
+  return file.bytes.size() > 2 && file.bytes[0] == 'P' &&
+         (file.bytes[1] == 'F' || file.bytes[1] == 'f');
+}
+
+FloatImage read_any(ReadFile file, const std::string& layer, bool tiff) {
+  if (is_pfm(file)) {
+    if (!layer.empty()) fail(file.path, fmt::format("is a PFM, without a layer \"{}\"", layer));
+    FloatImage image = read_pfm(file.bytes, file.path.string());
+    image.file = std::move(file.about);
+    return image;
+  }
+  const auto format = format_of(file);
+  if (!format || (*format == ImageFormat::tiff && !tiff)) {
+    fail(file.path,
+         fmt::format("is neither OpenEXR nor Radiance HDR nor PFM{}", tiff ? " nor TIFF" : ""));
+  }
+  return read_as(*format, std::move(file), layer);
+}
+
 /// Throws SceneError if a value is not `good`.
 template <class Good>
 void require(const FloatImage& image, const std::string& label, const char* allowed, Good good) {
@@ -201,17 +229,11 @@ void require(const FloatImage& image, const std::string& label, const char* allo
 }  // namespace
 
 FloatImage read_float_image(const std::filesystem::path& path, const std::string& layer) {
-  ReadFile file = read_all(path);
-  const auto format = format_of(file);
-  if (!format || *format == ImageFormat::tiff) fail(path, "is neither OpenEXR nor Radiance HDR");
-  return read_as(*format, std::move(file), layer);
+  return read_any(read_all(path), layer, false);
 }
 
-FloatImage read_reference_image(const std::filesystem::path& path) {
-  ReadFile file = read_all(path);
-  const auto format = format_of(file);
-  if (!format) fail(path, "is neither OpenEXR nor Radiance HDR nor TIFF");
-  return read_as(*format, std::move(file), "");
+FloatImage read_reference_image(const std::filesystem::path& path, const std::string& layer) {
+  return read_any(read_all(path), layer, true);
 }
 
 void require_radiance(const FloatImage& image, const std::string& label) {

@@ -16,6 +16,7 @@
 #include "server/routes/catalogue.h"
 #include "server/routes/json_body.h"
 #include "server/routes/named_files.h"
+#include "server/routes/refused_command.h"
 
 namespace lacuna {
 namespace {
@@ -102,6 +103,7 @@ JobSpec JobPosting::checked_spec(const std::string& body) const {
   try {
     JobSpec spec = parse_job(body);
     check_shards(spec);
+    throw_if_any(refused_command(spec));
     const auto missing = NamedFiles(scenes_).missing(spec);
     if (missing.empty()) return spec;
     throw HttpError(400, "The job names a missing file.", missing);

@@ -8,6 +8,7 @@
 #include "server/http/conditional.h"
 #include "server/routes/json_body.h"
 #include "server/routes/named_files.h"
+#include "server/routes/refused_command.h"
 #include "server/routes/sweep_catalogue.h"
 
 namespace lacuna {
@@ -22,7 +23,10 @@ SweepPlan SweepPosting::checked_plan(const std::string& body, SweepSpec& spec) c
   try {
     spec = parse_sweep(body);
     NamedFiles files(scenes_);
-    return expand(spec, [&](const JobSpec& job) { return files.missing(job); });
+    return expand(spec, [&](const JobSpec& job) {
+      throw_if_any(refused_command(job));
+      return files.missing(job);
+    });
   } catch (const BadJob& bad) {
     throw HttpError(400, "The sweep is not valid.", bad.problems());
   }

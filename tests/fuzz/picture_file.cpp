@@ -1,7 +1,8 @@
 #include <span>
 
-#include "jobs/import/picture_formats.h"
+#include "jobs/import/tga_picture.h"
 #include "renderer/core/scene_error.h"
+#include "renderer/images/image_read.h"
 #include "tests/fuzz/expect.h"
 
 // A TGA or a PFM, by its first byte: refused, or as many values as its size asks for.

@@ -74,6 +74,30 @@ TEST_F(SweepAnswers, TheLastRowCountsUntilTheBudgetEnds) {
   }
 }
 
+// A picture of another program at 4.2 s, whose squared error is taken to be as 1 / time near it.
+TEST_F(SweepAnswers, AnotherProgramIsComparedNearItsTimeOnly) {
+  const SweepFolder sweep = make(R"({"job": {"scene": "a.glb", "reference": "r.exr"},
+    "axes": {"/integrator": ["path", {"type": "foreign", "name": "Other",
+      "pictures": [{"file": "o.exr", "seconds": 4.2}]}]},
+    "compare_at": {"seconds": [2, 4], "metric": "mse"}})");
+  finish_all(sweep, {{16}, {16}});
+  const JobFolder other = sweep.folder(sweep.plan().runs[1]);
+  write_file_atomically(
+      other.file("curve.csv"),
+      "iteration,seconds,cpu_seconds,mae,rmse,mse,relmse,smape,est_rmse,at_floor\n"
+      ",4.2,,1,1,3,1,1,,0\n");
+  write_file_atomically(other.file("report.json"), R"({"seconds": {"render": 4.2}})");
+  const Answers a = answer(sweep);
+  EXPECT_EQ(cell_text(sweep.plan().cells[1].settings), "integrator Other");
+  EXPECT_FALSE(a.cells[1].at[0].error);
+  ASSERT_TRUE(a.cells[1].at[1].error);
+  EXPECT_NEAR(a.cells[1].at[1].error->value, 3 * 4.2 / 4, 1e-9);
+  EXPECT_FALSE(a.cells[1].preparation.cold || a.cells[1].preparation.warm);
+  EXPECT_FALSE(a.cells[1].variance);
+  ASSERT_TRUE(a.cells[1].efficiency);
+  EXPECT_NEAR(a.cells[1].efficiency->value, 1 / (3 * 4.2), 1e-9);
+}
+
 TEST_F(SweepAnswers, HowManySeedsWouldHalveWideIntervals) {
   const SweepFolder sweep = finish_all(make(two_depths), {{16}, {4}, {16}, {1}});
   const Answers wide = answer(sweep);

@@ -34,9 +34,11 @@ TEST(ImageRead, ExrWithLayersInAnyOrder) {
   EXPECT_EQ(plain.height, 1);
   EXPECT_EQ(plain.at(0, 0), Rgb(1, 2, 3));
   EXPECT_EQ(plain.at(1, 0), Rgb(4, 5, 6));
+  EXPECT_EQ(plain.least_alpha, 9);
   const FloatImage half = read_float_image(file, "half_a");
   EXPECT_EQ(half.at(0, 0), Rgb(10, 20, 30));
   EXPECT_EQ(half.at(1, 0), Rgb(40, 50, 60));
+  EXPECT_FALSE(half.least_alpha);
   expect_contains(image_refusal(file, "half_b"),
                   "lacks channel half_b.R, half_b.G, half_b.B; it has");
 }

@@ -5,11 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/images/image_read.h"
-
 namespace lacuna {
-
-// Formats of pictures that scenes of other renderers use and renderer/images does not read.
 
 /// Codes of 8 bits, interleaved, top row first.
 struct CodePicture {
@@ -20,9 +16,5 @@ struct CodePicture {
 /// A Truevision TGA of grey, 24 or 32 bits, plain or run-length encoded, up to max_texture_side.
 /// Throws SceneError with `label` for others and where the bytes end early.
 CodePicture read_tga(std::span<const std::uint8_t> bytes, const std::string& label);
-
-/// A PFM of one or three channels in either byte order, times the absolute value of its scale, up
-/// to max_picture_side. Throws SceneError with `label`.
-FloatImage read_pfm(std::span<const std::uint8_t> bytes, const std::string& label);
 
 }  // namespace lacuna
