@@ -19,6 +19,7 @@
 #include "jobs/spec/version.h"
 #include "jobs/store/own_document.h"
 #include "renderer/film/block_statistics.h"
+#include "renderer/film/flip.h"
 #include "renderer/images/image_read.h"
 
 namespace lacuna {
@@ -193,6 +194,8 @@ class ForeignRun {
     if (reference_) {
       const std::vector<double> rgb(image.rgb.begin(), image.rgb.end());
       row.errors = errors(rgb, reference_->rgb);
+      row.flip = flip_mean(hdr_flip({rgb, reference_->rgb, image.width, image.height},
+                                    flip_exposures(reference_->rgb), prepared_.pool.get()));
       row.at_floor = reference_->mse && *reference_->mse > (*row.errors)[ErrorMetric::mse] / 2;
       compare_means(p.file, rgb);
     }
