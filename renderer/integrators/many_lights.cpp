@@ -99,6 +99,7 @@ class ManyLights final : public Integrator {
           gather(context,
                  {terms, sampler ? &*sampler : nullptr, filter ? &*filter : nullptr, range}, image);
     }
+    visibility_.end();
     if (sampler) culled_ = sampler->culled(), culling_tests_ = double(sampler->tests());
     if (filter) counters += add_filtered(context, *filter, image);
     return counters;

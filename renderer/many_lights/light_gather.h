@@ -53,6 +53,7 @@ class LightGather {
   struct PendingContribution {
     Rgb value;
     std::uint32_t point;
+    [[no_unique_address]] typename Visibility::Tested test;
   };
   struct Test {
     Ray ray;
@@ -113,7 +114,7 @@ class LightGather {
       tests_[static_cast<std::size_t>(i)].push_back(
           {terms_.ray(at, block, i),
            {Rgb(term_.r[i], term_.g[i], term_.b[i]) * decision_.gain[i],
-            static_cast<std::uint32_t>(sample.point)}});
+            static_cast<std::uint32_t>(sample.point), visibility_.tested(state, i)}});
     });
     sum.tests += static_cast<std::uint64_t>(__builtin_popcountll(decision_.tests));
   }
@@ -127,8 +128,10 @@ class LightGather {
   }
 
   void flush(std::span<LightSum> sums, Counters& counters) {
-    queue_.flush(context_.scene.rays(), counters,
-                 [&](const PendingContribution& l) { sums[l.point].value += V3d(l.value); });
+    queue_.flush(context_.scene.rays(), counters, [&](const PendingContribution& l) {
+      sums[l.point].value += V3d(l.value);
+      visibility_.seen(states_[l.point], l.test);
+    });
   }
 
   const IterationContext& context_;

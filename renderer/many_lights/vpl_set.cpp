@@ -22,7 +22,7 @@ std::uint64_t main_direction(const V3f& n) {
 
 /// A part of a list of lights: at most 64 of one group.
 struct Run {
-  std::uint32_t group;
+  LightGroup group;
   std::vector<std::size_t> lights;
 };
 
@@ -35,7 +35,7 @@ std::vector<Run> sorted_runs(const std::vector<Light>& lights, const LightGroups
   for (const Light& l : lights) box.add(geometry(l).x);
   const MortonOrder order(box);
   struct Key {
-    std::uint32_t group;
+    LightGroup group;
     std::uint64_t code;
     std::size_t light;
     bool operator<(const Key& k) const {

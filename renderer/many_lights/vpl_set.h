@@ -62,7 +62,8 @@ struct BlockRange {
 };
 
 /// Assigns a group to each light; all lights of a block belong to one group.
-using LightGroups = std::function<std::uint32_t(const VplGeometry&)>;
+using LightGroup = std::uint64_t;
+using LightGroups = std::function<LightGroup(const VplGeometry&)>;
 /// The group of lights without a group.
 inline constexpr std::uint32_t no_group = 0xffffffff;
 
@@ -110,7 +111,7 @@ class VplSet {
     return n < Lanes::size ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0};
   }
   /// The group of the lights of block `b`.
-  std::uint32_t group(std::size_t b) const { return blocks_[b].group; }
+  LightGroup group(std::size_t b) const { return blocks_[b].group; }
   /// The bounds of block `b`; requires diffuse(b).
   const BlockBounds& bounds(std::size_t b) const { return bounds_[blocks_[b].first]; }
   /// The lights of block `b` if they are diffuse or point lights; else null.
@@ -142,7 +143,7 @@ class VplSet {
     std::size_t first;  // in diffuse_ or general_
     int count;
     bool diffuse;
-    std::uint32_t group;
+    LightGroup group;
   };
 
   void add(StoredLights& path, const EmitterPoint& e) const;

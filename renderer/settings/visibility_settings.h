@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "base/settings/field.h"
 #include "renderer/settings/node_map_settings.h"
@@ -152,39 +153,9 @@ void describe(V& v, RouletteVisibilitySettings& s) {
   v("rule", s.rule, {.doc = "how the probability of a test follows from a contribution"});
 }
 
-/// visibility: probabilistic.
-struct ProbabilisticVisibilitySettings : ChanceSettings {
-  static constexpr std::string_view name = "probabilistic";
-  static constexpr std::string_view doc =
-      "lights whose visibility is equal at nearby cache points are tested with a low probability; "
-      "the control variate is the mean of these (Nabata et al.)";
-
-  double epsilon_variance = 0.1;
-  // These differ from the published values, see their tables:
-  bool clamp_negative = false;
-  CacheLights cache_lights = CacheLights::lit;
-  bool operator==(const ProbabilisticVisibilitySettings&) const = default;
-};
-
 inline constexpr std::string_view cache_points_doc =
     "shading points at which the visibility of lights is tested: one for each cluster of the "
     "picture's shading points, split by position and normal";
-
-template <class V>
-void describe(V& v, ProbabilisticVisibilitySettings& s) {
-  describe_cache(v, s, cache_points_doc);
-  describe_chance(v, s);
-  describe_cache_lights(v, s, "\"all\"");
-  v("epsilon_variance", s.epsilon_variance,
-    {.doc =
-         "smallest variance assumed for a visibility, even where all cache points agree (eq. 11)",
-     .min = 0,
-     .max = 0.25,
-     .above_min = true});
-  v("clamp_negative", s.clamp_negative,
-    {.doc = "set an iteration's negative pixels to black (section 4.2): biased",
-     .published = "true"});
-}
 
 /// visibility: interpolated.
 struct InterpolatedVisibilitySettings {
@@ -279,6 +250,115 @@ void describe(V& v, NodeMapsVisibilitySettings& s) {
             "(percentage-closer filtering)",
      .min = 1,
      .max = 7});
+}
+
+/// guess: cache_points.
+struct CachePointsGuessSettings {
+  static constexpr std::string_view name = "cache_points";
+  static constexpr std::string_view doc =
+      "the mean visibility of the nearest cache points (Nabata et al., 3.1)";
+  bool operator==(const CachePointsGuessSettings&) const = default;
+};
+template <class V>
+void describe(V&, CachePointsGuessSettings&) {}
+
+/// guess: cells.
+struct CellsGuessSettings {
+  static constexpr std::string_view name = "cells";
+  static constexpr std::string_view doc =
+      "no answer for a single light: the learned rate is the mean visibility between two cells";
+  bool operator==(const CellsGuessSettings&) const = default;
+};
+template <class V>
+void describe(V&, CellsGuessSettings&) {}
+
+/// One source of guesses.
+using SourceSettings =
+    std::variant<CachePointsGuessSettings, ViewMapsVisibilitySettings, NodeMapsVisibilitySettings,
+                 GatesVisibilitySettings, CellsGuessSettings>;
+
+/// guess: mixture.
+struct MixtureGuessSettings {
+  static constexpr std::string_view name = "mixture";
+  static constexpr std::string_view doc =
+      "the answers of several sources together: rates are learned for each combination of them";
+
+  std::vector<SourceSettings> of;
+  bool operator==(const MixtureGuessSettings&) const = default;
+};
+template <class V>
+void describe(V& v, MixtureGuessSettings& s) {
+  v("of", s.of, {.doc = "the sources", .min = 2, .max = 3, .required = true});
+}
+
+/// A source, or several.
+using GuessSettings =
+    std::variant<CachePointsGuessSettings, ViewMapsVisibilitySettings, NodeMapsVisibilitySettings,
+                 GatesVisibilitySettings, CellsGuessSettings, MixtureGuessSettings>;
+
+/// How often a guess is taken to be wrong.
+enum class Reliability { by_guess, assumed, picture, clusters };
+
+template <>
+struct EnumTable<Reliability> {
+  static constexpr std::array<EnumValue<Reliability>, 4> values{{
+      {Reliability::by_guess, "by_guess", "assumed for cache_points alone, else clusters"},
+      {Reliability::assumed, "assumed",
+       "the variance of a visibility is q (1 - q), at least "
+       "epsilon_variance (eq. 11)"},
+      {Reliability::picture, "picture", "rates learned from the tests of earlier iterations"},
+      {Reliability::clusters, "clusters",
+       "the same for each pair of the visibility clusters of point and light"},
+  }};
+};
+
+/// visibility: probabilistic.
+struct ProbabilisticVisibilitySettings : ChanceSettings {
+  static constexpr std::string_view name = "probabilistic";
+  static constexpr std::string_view doc =
+      "lights whose guessed visibility is reliable, by default equal at nearby cache points, are "
+      "tested with a low probability; the guess is the control variate (Nabata et al.)";
+
+  double epsilon_variance = 0.1;
+  // These differ from the published values, see their tables:
+  bool clamp_negative = false;
+  CacheLights cache_lights = CacheLights::lit;
+  GuessSettings guess = CachePointsGuessSettings{};
+  Reliability reliability = Reliability::by_guess;
+  int variance_points = 200;
+
+  /// Whether the error rates of the guess are learned, and whether by cell.
+  bool learned_rates() const {
+    return reliability == Reliability::by_guess
+               ? !std::holds_alternative<CachePointsGuessSettings>(guess)
+               : reliability != Reliability::assumed;
+  }
+  bool reliability_cells() const { return learned_rates() && reliability != Reliability::picture; }
+  bool operator==(const ProbabilisticVisibilitySettings&) const = default;
+};
+
+template <class V>
+void describe(V& v, ProbabilisticVisibilitySettings& s) {
+  describe_cache(v, s, cache_points_doc);
+  describe_chance(v, s);
+  describe_cache_lights(v, s, "\"all\"");
+  v("epsilon_variance", s.epsilon_variance,
+    {.doc =
+         "smallest variance assumed for a visibility, even where all cache points agree (eq. 11)",
+     .min = 0,
+     .max = 0.25,
+     .above_min = true});
+  v("clamp_negative", s.clamp_negative,
+    {.doc = "set an iteration's negative pixels to black (section 4.2): biased",
+     .published = "true"});
+  v("guess", s.guess,
+    {.doc = "where the guessed visibility of a light comes from; any guess leaves the mean right"});
+  v("reliability", s.reliability, {.doc = "how often the guess is taken to be wrong"});
+  v("variance_points", s.variance_points,
+    {.doc = "shading points at which the variance of contributions is measured, if the guess is "
+            "not by cache points",
+     .min = 1,
+     .max = 1 << 20});
 }
 
 /// How the visibility between a virtual light and a shading point is estimated.

@@ -1,47 +1,21 @@
 #pragma once
 
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/test_probability.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
 
-/// visibility: probabilistic. With q the mean visibility of a light at the nearest cache points,
-/// the estimate is q with probability p, without a shadow ray, and (v - p q) / (1 - p) with
-/// probability 1 - p, where v is the result of the shadow ray. Its mean is v for any q and p
-/// (Nabata et al., eq. 6). p is large where the cache points agree.
-class ProbabilisticVisibility : public VisibilityBase {
- public:
-  explicit ProbabilisticVisibility(const ProbabilisticVisibilitySettings& settings)
-      : settings_(settings),
-        points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities,
-                settings.cache_lights) {}
-
-  Counters begin(const LightPass& pass);
-  struct At {
-    CachePoints::Neighbours neighbours;
-    TestProbability chance;
-    Rng rng;
-  };
-  At at(const ShadingPoint& point, const IterationContext& context) const;
-  void decide(At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const;
-  bool clamps_negative() const { return settings_.clamp_negative; }
-  std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
-
- private:
-  ProbabilisticVisibilitySettings settings_;
-  CachePoints points_;
-  float other_rays_ = 0;
-};
-
-/// visibility: interpolated. The estimate is q, without shadow rays.
+/// visibility: interpolated. The estimate is the mean visibility q of a light at the nearest cache
+/// points, without shadow rays.
 class InterpolatedVisibility : public VisibilityBase {
  public:
   explicit InterpolatedVisibility(const InterpolatedVisibilitySettings& settings)
       : points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities,
                 settings.cache_lights) {}
 
-  Counters begin(const LightPass& pass) { return points_.build(pass); }
+  Counters begin(const LightPass& pass) {
+    return pass.lights.is_first() ? points_.build(pass) : Counters{};
+  }
   struct At {
     CachePoints::Neighbours neighbours;
   };
@@ -52,10 +26,19 @@ class InterpolatedVisibility : public VisibilityBase {
     d.tests = 0;
     points_.expected(at.neighbours, block, d.untested);
   }
+  const CachePoints& points() const { return points_; }
   std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
 
- private:
+ protected:
   CachePoints points_;
+};
+
+/// guess: cache_points. The same q, and the lights that none of the points has tested are unknown.
+struct CachePointsGuess : InterpolatedVisibility {
+  using InterpolatedVisibility::InterpolatedVisibility;
+  void decide(At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const {
+    d.tests = terms.lit & ~points_.expected(at.neighbours, block, d.untested);
+  }
 };
 
 }  // namespace lacuna

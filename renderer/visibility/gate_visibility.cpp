@@ -25,12 +25,7 @@ struct Positions {
 void GateVisibility::prepare(const PrepareContext& context) {
   SpaceAnalysis& space = context.space;
   const GridTransform transform = space.voxels().transform;
-  lookup_.emplace(transform, space.node_map());
-  const VisibilityClusters& clusters = space.clusters();
-  for (const std::uint32_t n : space.simplified().parent) {
-    cluster_of_.push_back(clusters.of_node[n]);
-  }
-  clusters_ = clusters.count;
+  clusters_.emplace(space);
   if (!settings_.through_gates) return;  // gates are not built
   const VisibilityGates& all = space.gates();
   first_ = all.first;
@@ -40,6 +35,15 @@ void GateVisibility::prepare(const PrepareContext& context) {
     gates_.push_back(
         {V3f(transform.to_world(V3d(g.centre))), g.axis, static_cast<float>(radius * radius)});
   }
+}
+
+Counters GateVisibility::begin(const LightPass& pass) {
+  lights_ = &pass.terms.lights();
+  cluster_of_block_.clear();
+  for (std::size_t b = 0; b < lights_->blocks(); ++b) {
+    cluster_of_block_.push_back(group(lights_->geometry(b, 0)));
+  }
+  return {};
 }
 
 /// The fraction of light in unit direction `w` that passes a gate.
@@ -80,7 +84,7 @@ const std::vector<GeometryCluster::Listed>& GateVisibility::listed(const At& at,
   points.block = block;
   points.list.clear();
   const Positions lights(*lights_, block);
-  const std::uint32_t cluster = lights_->group(block);
+  const std::uint32_t cluster = cluster_of_block_[block];
   for (std::uint32_t g = first_[cluster]; g < first_[cluster + 1]; ++g) {
     const V3f c = gates_[g].centre, x = points.centre;
     std::uint64_t meets = 0;
@@ -100,7 +104,7 @@ const std::vector<GeometryCluster::Listed>& GateVisibility::listed(const At& at,
 
 void GateVisibility::decide(const At& at, std::size_t block, const Terms& terms,
                             VisibilityEstimate& d) const {
-  const std::uint32_t cluster = lights_->group(block);
+  const std::uint32_t cluster = cluster_of_block_[block];
   if (cluster == no_group || at.cluster == no_group) return test_all(terms, d);
   d.tests = 0;
   if (cluster == at.cluster) {
@@ -129,7 +133,7 @@ void GateVisibility::decide(const At& at, std::size_t block, const Terms& terms,
 }
 
 bool GateVisibility::lists_none(const At& at, std::size_t block) const {
-  const std::uint32_t cluster = lights_->group(block);
+  const std::uint32_t cluster = cluster_of_block_[block];
   const std::vector<GeometryCluster::Listed>& list = listed(at, block);
   for (const GeometryCluster::Listed& l : list) {
     at.shared->point_tests += static_cast<std::uint64_t>(std::popcount(l.lights));
@@ -141,7 +145,7 @@ bool GateVisibility::lists_none(const At& at, std::size_t block) const {
 
 std::vector<std::pair<std::string, double>> GateVisibility::statistics() const {
   std::vector<std::pair<std::string, double>> stats{
-      {"visibility_clusters", static_cast<double>(clusters_)},
+      {"visibility_clusters", static_cast<double>(clusters_->count())},
       {"visibility_gates", static_cast<double>(gates_.size()) / 2}};
   if (settings_.tests == GateTests::points) return stats;
   stats.emplace_back("geometry_clusters", static_cast<double>(counts_.clusters));

@@ -20,15 +20,14 @@ namespace lacuna {
 class GateVisibility : public VisibilityBase {
  public:
   static constexpr bool needs_space() { return true; }
+  static constexpr float guess_cost = 0.05F;  // measured on door (docs)
 
   explicit GateVisibility(const GatesVisibilitySettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context);
-  std::uint32_t group(const VplGeometry& light) const { return cluster(node_of(*lookup_, light)); }
-  Counters begin(const LightPass& pass) {
-    lights_ = &pass.terms.lights();
-    return {};
-  }
+  std::uint32_t group(const VplGeometry& light) const { return clusters_->of(light); }
+  std::uint64_t groups() const { return clusters_->count(); }
+  Counters begin(const LightPass& pass);
   struct At {
     V3f x;
     std::uint32_t cluster;
@@ -36,7 +35,7 @@ class GateVisibility : public VisibilityBase {
     std::uint32_t geometry = 0;                          // of `shared`
   };
   At at(const ShadingPoint& point, const IterationContext&) const {
-    return {point.vertex->surface.x, cluster(node_of(*lookup_, point))};
+    return {point.vertex->surface.x, clusters_->of(point)};
   }
   /// Divides the points that are gathered together into geometry clusters.
   void share(std::span<const ShadingPoint> points, std::span<At> states,
@@ -44,7 +43,7 @@ class GateVisibility : public VisibilityBase {
   /// Whether the lights belong to another cluster, and gates are disabled or no cone of a light
   /// meets the point's geometry cluster.
   bool hides(const At& at, std::size_t block) const {
-    const std::uint32_t cluster = lights_->group(block);
+    const std::uint32_t cluster = cluster_of_block_[block];
     if (cluster == at.cluster || cluster == no_group || at.cluster == no_group) return false;
     return !settings_.through_gates || (at.shared && lists_none(at, block));
   }
@@ -58,9 +57,6 @@ class GateVisibility : public VisibilityBase {
     float radius2;
   };
 
-  std::uint32_t cluster(std::uint32_t node) const {
-    return node == no_node ? no_group : cluster_of_[node];
-  }
   /// The list of a point's geometry cluster for a block of lights of another cluster (7.3.3).
   const std::vector<GeometryCluster::Listed>& listed(const At& at, std::size_t block) const;
   /// Whether that list is empty; counts its tests.
@@ -68,12 +64,11 @@ class GateVisibility : public VisibilityBase {
   Float8 through(const Gate& gate, const Float8x3& to_gate, const Float8x3& w) const;
 
   GatesVisibilitySettings settings_;
-  std::optional<SurfaceLookup> lookup_;
-  std::vector<std::uint32_t> cluster_of_;  // of each skeleton node
-  std::uint32_t clusters_ = 0;
+  std::optional<ClusterLookup> clusters_;
   std::vector<std::uint32_t> first_;  // of each cluster: first index in gates_; and the end
   std::vector<Gate> gates_;           // each gate once for each of its two clusters
   const VplSet* lights_ = nullptr;
+  std::vector<std::uint32_t> cluster_of_block_;
   mutable GateTestCounts counts_;
 };
 

@@ -14,7 +14,7 @@ Counters NodeMapVisibility::begin(const LightPass& pass) {
   views_.clear();
   view_of_.assign(lights.blocks(), no_group);
   for (std::size_t b = 0; b < lights.blocks(); ++b) {
-    const std::uint32_t node = lights.group(b);
+    const std::uint32_t node = group(lights.geometry(b, 0));
     if (node == no_group) continue;
     if (view_of_node[node] == no_group) {
       view_of_node[node] = static_cast<std::uint32_t>(views_.size());

@@ -4,6 +4,7 @@
 #include "renderer/visibility/gate_visibility.h"
 #include "renderer/visibility/node_map_visibility.h"
 #include "renderer/visibility/plain_visibility.h"
+#include "renderer/visibility/probabilistic_visibility.h"
 #include "renderer/visibility/roulette_visibility.h"
 #include "renderer/visibility/view_map_visibility.h"
 #include "renderer/visibility/visibility.h"

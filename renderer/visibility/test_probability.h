@@ -47,6 +47,11 @@ struct TestSampler {
   }
   float probability(int i) const { return float(v[static_cast<std::size_t>(i)]) / float(one); }
 
+  /// `unit` / probability(i), for light `i` with probability above 0.
+  std::uint32_t inverse(int i, std::uint64_t unit) const {
+    return static_cast<std::uint32_t>(unit * one / v[static_cast<std::size_t>(i)]);
+  }
+
   std::uint64_t sample(TestDraws draws, Rng& rng) const {
     return draws == TestDraws::systematic ? systematic(rng.next_u32()) : independent(rng);
   }

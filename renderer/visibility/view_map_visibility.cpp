@@ -34,7 +34,7 @@ std::vector<BlockRange> ViewMapVisibility::passes(const VplSet& lights) const {
   std::vector<BlockRange> ranges{{}};
   double views = 0;
   for (std::size_t b = 0; b < lights.blocks(); ++b) {
-    const auto more = lights.group(b) == no_group ? 0.0 : double(lights.count(b));
+    const auto more = lights.geometry(b, 0).infinite ? 0.0 : double(lights.count(b));
     if (views > 0 && views + more > most) {
       ranges.back().end = b;
       ranges.push_back({b});
@@ -54,7 +54,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   first_.assign(lights_->blocks(), 0);
   for (std::size_t b = pass.lights.first; b < std::min(pass.lights.end, lights_->blocks()); ++b) {
     first_[b] = static_cast<std::uint32_t>(views.size());
-    if (lights_->group(b) == no_group) continue;
+    if (lights_->geometry(b, 0).infinite) continue;
     for (int i = 0; i < lights_->count(b); ++i) {
       const VplGeometry p = lights_->geometry(b, i);
       views.push_back({p.x + p.n * (before_surface * cell_), p.n});
@@ -130,7 +130,7 @@ bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at, Queries& queries)
 
 void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& terms,
                                VisibilityEstimate& d) const {
-  if (lights_->group(block) == no_group) return test_all(terms, d);
+  if (lights_->geometry(block, 0).infinite) return test_all(terms, d);
   d.tests = 0;
   d.untested.v.fill(0);
   Queries queries;

@@ -14,8 +14,9 @@ namespace lacuna {
 ///   unbiased strategy.
 /// - share(points, states, context): data that the points of a tile have in common, once per tile.
 /// - hides(): whether no light of a block illuminates the point.
-/// - group(), passes(), begin(): the order of the lights, their division into passes, and the
-///   preparation of each pass.
+/// - group(), groups(), passes(), begin(), end(): the order of the lights, their division into
+///   passes, the preparation of each pass, and the end of an iteration.
+/// - tested(), seen(): what a strategy learns from the rays of its tests.
 /// - clamps_negative(): whether negative pixels become black, which is biased.
 ///
 /// at(), decide() and hides() are const and are called by many threads; their random numbers come
@@ -30,9 +31,12 @@ concept Visibility = Strategy<V> &&
   k.share(std::span(&point, 1), std::span(&at, 1), context);
   k.decide(at, std::size_t{}, terms, d);
   { k.hides(at, std::size_t{}) } -> std::same_as<bool>;
-  { k.group(light) } -> std::same_as<std::uint32_t>;
+  { k.group(light) } -> std::convertible_to<LightGroup>;
+  { k.groups() } -> std::same_as<std::uint64_t>;
   { k.passes(lights) } -> std::same_as<std::vector<BlockRange>>;
   { v.begin(pass) } -> std::same_as<Counters>;
+  v.end();
+  k.seen(at, k.tested(at, 0));
   { k.clamps_negative() } -> std::same_as<bool>;
 };
 

@@ -19,6 +19,7 @@ import regret
 import sampler
 import scaling
 import shape
+import visibility
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = ROOT / "build/release/bin"
@@ -227,6 +228,11 @@ def cores(bench, options):
     scaling.run(bench, options)
 
 
+def guesses(bench, options):
+    """Guesses of probabilistic visibility: variance times rays and CPU time."""
+    visibility.run(bench, options)
+
+
 def scale(bench, _):
     """100,000 job folders with a stand-in for Slurm, and merging: docs/scaling.md."""
     node(bench, "scale.mjs")
@@ -235,7 +241,7 @@ def scale(bench, _):
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
 LONG = {"regret": regrets, "guide_gains": gains, "emitters": selection, "sampler": spreading, "scale": scale,
-        "peers": beside, "scaling": cores}  # only by name
+        "peers": beside, "scaling": cores, "visibility": guesses}  # only by name
 
 
 def main():
@@ -260,6 +266,12 @@ def main():
     parser.add_argument("--guide-seeds", type=int, default=3, help="at least 2")
     parser.add_argument("--guide-scenes", nargs="+", choices=guide_gains.SCENES, metavar="SCENE",
                         help=f"of {', '.join(guide_gains.SCENES)} (default: all)")
+    parser.add_argument("--visibility-seeds", type=int, default=3, help="at least 2")
+    parser.add_argument("--visibility-width", type=int, default=256, help="pixels; half as many rows")
+    parser.add_argument("--visibility-paths", type=int, default=3000, help="light paths")
+    parser.add_argument("--visibility-iterations", type=int, default=8)
+    parser.add_argument("--visibility-scenes", nargs="+", choices=visibility.SCENES, metavar="SCENE",
+                        help=f"of {', '.join(visibility.SCENES)} (default: all)")
     options = parser.parse_args()
     if options.guide_seeds < 2:
         parser.error(f"--guide-seeds {options.guide_seeds}: at least 2, because errors are told by pairs of pictures")
