@@ -51,6 +51,12 @@ test("every fault of a job is named with its place, and no job is made", async (
   assert.deepEqual(await pointers({ scene: "room/link.glb" }), ["/scene"], "a link");
   assert.deepEqual(await pointers({ scene, environment: { file: "sky.exr" } }),
     ["/environment/file"]);
+  // A client must not run programs on this machine.
+  const command = { type: "foreign", name: "x", command: ["touch", "/tmp/x"] };
+  assert.deepEqual(await pointers({ scene, integrator: command }), ["/integrator/command"]);
+  const sweep = { job: { scene }, axes: { "/integrator": ["path", command] } };
+  const refused = await problem(await service.postSweepText(JSON.stringify(sweep)), 400);
+  assert.deepEqual(refused.errors.map((e) => e.pointer), ["/axes/~1integrator/1/command"]);
   await noJobs(service);
 });
 
