@@ -72,6 +72,7 @@ def main():
 
     write("lacuna/schema/job.schema.json", printed(bin_folder / "lacuna", "schema"))
     write("lacuna/schema/sweep.schema.json", printed(bin_folder / "lacuna", "schema", "--sweep"))
+    write("lacuna/schema/figure.schema.json", printed(bin_folder / "lacuna", "schema", "--figure"))
     for program in PROGRAMS:
         text = printed(bin_folder / program, "--help")
         version = printed(bin_folder / program, "--version").strip()

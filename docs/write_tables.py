@@ -9,7 +9,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 LACUNA = pathlib.Path(os.environ.get("LACUNA_BIN", HERE.parent / "build/release/bin")) / "lacuna"
 MARK = re.compile(r"^<!-- What follows is printed by `lacuna ([a-z -]+)`; \./dev docs writes it anew\. -->\n\n", re.MULTILINE)
-PAGES = ("job-file.md", "sweeps-and-reports.md", "service.md", "scenes.md")
+PAGES = ("job-file.md", "sweeps-and-reports.md", "service.md", "scenes.md", "figures.md")
 
 
 def expected(page):

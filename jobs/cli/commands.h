@@ -28,5 +28,6 @@ void add_analyze(CLI::App& app, int& code);
 void add_sweep(CLI::App& app, int& code);
 void add_report(CLI::App& app, int& code);
 void add_archive(CLI::App& app, int& code);
+void add_figure(CLI::App& app, int& code);
 
 }  // namespace lacuna

@@ -44,6 +44,7 @@ int run(int argc, char** argv) {
   lacuna::add_sweep(app, code);
   lacuna::add_report(app, code);
   lacuna::add_archive(app, code);
+  lacuna::add_figure(app, code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

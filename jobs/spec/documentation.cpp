@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "jobs/spec/figure_spec.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/sweep_spec.h"
 #include "jobs/spec/type_tree.h"
@@ -92,6 +93,12 @@ void put_parts(std::string& page, const Member& member, const std::string& path)
     page += fmt::format("\n## {}\n\n{}\n", path, sentence(member.field.doc));
     put_section(page, member.type, path);
   }
+  if (member.type.kind == Type::Kind::list &&
+      member.type.elements.front().kind == Type::Kind::object) {
+    page +=
+        fmt::format("\n## {}\n\nAn element of the list: {}\n", path, sentence(member.field.doc));
+    put_section(page, member.type.elements.front(), path);
+  }
   for (std::size_t i = 0; member.type.kind == Type::Kind::choice && i < member.type.names.size();
        ++i) {
     const Type::Name& name = member.type.names[i];
@@ -148,6 +155,7 @@ std::string job_documentation() {
       "\"guide\": {\"type\": \"skeleton\", \"strength\": 8}}` is the method of Noel 2015, chapter "
       "9.\n");
 }
+std::string figure_documentation() { return titled_page<FigureSpec>("The file of a figure"); }
 std::string sweep_documentation() { return titled_page<SweepSpec>("The sweep file"); }
 
 }  // namespace lacuna

@@ -34,9 +34,13 @@ std::string job_schema();
 /// JSON Schema 2020-12 of the sweep file.
 std::string sweep_schema();
 
+/// JSON Schema 2020-12 of a figure's file.
+std::string figure_schema();
+
 /// The settings pages (Markdown), made from the settings tables: every key, type, range, default,
 /// unit.
 std::string job_documentation();
 std::string sweep_documentation();
+std::string figure_documentation();
 
 }  // namespace lacuna

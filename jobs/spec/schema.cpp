@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "jobs/spec/figure_spec.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/sweep_spec.h"
 #include "jobs/spec/type_tree.h"
@@ -187,6 +188,7 @@ std::string titled_schema(const char* title) {
 }  // namespace
 
 std::string job_schema() { return titled_schema<JobSpec>("Lacuna job"); }
+std::string figure_schema() { return titled_schema<FigureSpec>("Lacuna figure"); }
 std::string sweep_schema() { return titled_schema<SweepSpec>("Lacuna sweep"); }
 
 }  // namespace lacuna

@@ -16,8 +16,8 @@ namespace lacuna {
 namespace {
 
 /// The metric of the sweep, or the default for cells with or without references.
-ErrorMetric chosen_metric(const SweepFolder& sweep) {
-  if (const auto& asked = sweep.spec().compare_at.metric) return *asked;
+ErrorMetric chosen_metric(const SweepFolder& sweep, const CompareAt& at) {
+  if (at.metric) return *at.metric;
   const auto& cells = sweep.plan().cells;
   const bool referenced = std::all_of(cells.begin(), cells.end(),
                                       [](const SweepCell& c) { return !c.job.reference.empty(); });
@@ -26,10 +26,11 @@ ErrorMetric chosen_metric(const SweepFolder& sweep) {
 
 class Comparison {
  public:
-  explicit Comparison(const SweepFolder& sweep) : sweep_(sweep), plan_(sweep.plan()) {}
+  Comparison(const SweepFolder& sweep, const CompareAt& at)
+      : sweep_(sweep), at_(at), plan_(sweep.plan()) {}
 
   Answers run() {
-    answers_.axes = {chosen_metric(sweep_), std::string(enum_name(sweep_.spec().compare_at.clock))};
+    answers_.axes = {chosen_metric(sweep_, at_), std::string(enum_name(at_.clock))};
     read();
     answers_.stale = stale_runs(answers_.results);
     gather_cells();
@@ -122,10 +123,9 @@ class Comparison {
   }
 
   void choose_points(PictureAnswer& p) {
-    const CompareAt& asked = sweep_.spec().compare_at;
     const auto all = replicates(p);
-    p.seconds = asked.seconds.empty() ? natural_times(all) : asked.seconds;
-    p.errors = asked.errors.empty() ? natural_errors(all) : asked.errors;
+    p.seconds = at_.seconds.empty() ? natural_times(all) : at_.seconds;
+    p.errors = at_.errors.empty() ? natural_errors(all) : at_.errors;
     std::sort(p.seconds.begin(), p.seconds.end());
     std::sort(p.errors.begin(), p.errors.end(), std::greater<>());
   }
@@ -244,7 +244,7 @@ class Comparison {
     }
     hint_at_seeds();
     if (!answers_.tainted.empty()) {
-      const bool wall = sweep_.spec().compare_at.clock == SweepClock::seconds;
+      const bool wall = at_.clock == SweepClock::seconds;
       w.push_back(fmt::format("{} of {} runs were timed under other load on the machine{}",
                               answers_.tainted.size(), plan_.runs.size(),
                               wall ? "; compare_at.clock \"cpu_seconds\" is less affected" : ""));
@@ -274,6 +274,7 @@ class Comparison {
   }
 
   const SweepFolder& sweep_;
+  const CompareAt& at_;
   const SweepPlan& plan_;
   std::vector<std::vector<ErrorCurve>> curves_;  // of each cell's finished runs
   std::map<std::string, std::vector<const RunResult*>> spaces_;
@@ -282,6 +283,9 @@ class Comparison {
 
 }  // namespace
 
-Answers answer(const SweepFolder& sweep) { return Comparison(sweep).run(); }
+Answers answer(const SweepFolder& sweep) { return answer(sweep, sweep.spec().compare_at); }
+Answers answer(const SweepFolder& sweep, const CompareAt& at) {
+  return Comparison(sweep, at).run();
+}
 
 }  // namespace lacuna

@@ -72,6 +72,8 @@ struct Answers {
 /// Reads and compares all runs that are done. Throws the exceptions of SweepFolder::state() and
 /// read_result().
 Answers answer(const SweepFolder& sweep);
+/// The same at other times and errors than the sweep's own, by another metric or clock.
+Answers answer(const SweepFolder& sweep, const CompareAt& at);
 
 /// The answers as JSON, for the page and the report (docs/sweeps-and-reports.md).
 std::string answers_text(const SweepFolder& sweep, const Answers& answers);

@@ -9,7 +9,7 @@ test("help and version", async (t) => {
   const folder = temporaryFolder(t);
   const help = await run(folder, "--help");
   assert.equal(help.code, 0);
-  for (const word of ["render", "check", "schema", "extend", "list", "compare", "cache", "71 out of memory", "75 interrupted"]) assert.ok(help.out.includes(word), word);
+  for (const word of ["render", "check", "schema", "extend", "list", "compare", "figure", "cache", "71 out of memory", "75 interrupted"]) assert.ok(help.out.includes(word), word);
   assert.match((await run(folder, "--version")).out, /^lacuna \d+\.\d+\.\d+\n$/);
   assert.equal((await run(folder, "paint")).code, 2);
   assert.equal((await run(folder)).code, 2);
