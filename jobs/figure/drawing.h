@@ -60,10 +60,15 @@ struct ImageMark {
   Ink frame_ink = {};
 };
 
+inline constexpr int jpeg_pixels = 96 * 96;
+
 struct Drawing {
   double width = 0, height = 0;
   std::string title;
   std::string font;  ///< family, as fontconfig knows it
+  /// Quality of the JPEGs that pictures of more than `jpeg_pixels` are in a PDF or SVG; 0: none
+  /// are.
+  int jpeg_quality = 0;
   std::vector<std::variant<TextMark, LineMark, AreaMark, ImageMark>> marks;
 
   template <class Mark>

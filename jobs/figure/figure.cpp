@@ -27,6 +27,7 @@ Drawing draw_panels(const FigureSource& source, const std::vector<FigurePanel>& 
   page.drawing.width = source.spec().width * points_per_mm;
   page.drawing.font =
       source.spec().font == FigureFont::serif ? "Linux Libertine O" : "Linux Biolinum O";
+  page.drawing.jpeg_quality = source.spec().lossless ? 0 : 95;
   page.drawing.title = source.sweep().spec().label;
   for (const FigurePanel panel : panels) {
     page.y += 2;

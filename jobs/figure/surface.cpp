@@ -10,6 +10,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "jobs/figure/jpeg_write.h"
+
 namespace lacuna {
 namespace {
 
@@ -55,7 +57,8 @@ double advance(cairo_t* c, const std::string& text) {
 
 class Painter {
  public:
-  Painter(cairo_t* c, const std::string& font) : c_(c), font_(font) {}
+  Painter(cairo_t* c, const Drawing& drawing)
+      : c_(c), font_(drawing.font), quality_(drawing.jpeg_quality) {}
 
   void operator()(const TextMark& t) const {
     set_font(c_, font_, t.style);
@@ -99,6 +102,7 @@ class Painter {
       }
     }
     cairo_surface_mark_dirty(surface.get());
+    if (quality_ > 0 && w * h > jpeg_pixels) attach_jpeg(surface.get(), m.image);
     cairo_save(c_);
     cairo_translate(c_, m.x, m.y);
     cairo_scale(c_, m.width / w, m.height / h);
@@ -117,6 +121,16 @@ class Painter {
   }
 
  private:
+  /// What a PDF or SVG stores instead of the pixels.
+  void attach_jpeg(cairo_surface_t* surface, const CodeImage& image) const {
+    auto bytes = std::make_unique<std::string>(encode_jpeg(image, quality_));
+    const auto* data = reinterpret_cast<const unsigned char*>(bytes->data());
+    check(cairo_surface_set_mime_data(
+        surface, CAIRO_MIME_TYPE_JPEG, data, bytes->size(),
+        [](void* text) { delete static_cast<std::string*>(text); }, bytes.get()));
+    bytes.release();  // NOLINT(bugprone-unused-return-value): the surface deletes it
+  }
+
   void trace(const std::vector<FigurePoint>& points) const {
     cairo_new_path(c_);
     for (const FigurePoint& p : points) cairo_line_to(c_, p.x, p.y);
@@ -124,13 +138,14 @@ class Painter {
 
   cairo_t* c_;
   const std::string& font_;
+  int quality_;
 };
 
 void paint(cairo_surface_t* surface, const Drawing& drawing, double scale) {
   check(cairo_surface_status(surface));
   const Context context(cairo_create(surface));
   cairo_scale(context.get(), scale, scale);
-  const Painter painter(context.get(), drawing.font);
+  const Painter painter(context.get(), drawing);
   for (const auto& mark : drawing.marks) std::visit(painter, mark);
   check(cairo_status(context.get()));
 }

@@ -101,6 +101,7 @@ struct FigureSpec {
   FigureFont font = FigureFont::sans;
   double width = 178;
   int dpi = 300;
+  bool lossless = false;
   bool operator==(const FigureSpec&) const = default;
 };
 template <class V>
@@ -137,6 +138,10 @@ void describe(V& v, FigureSpec& s) {
     {.doc = "resolution of a PNG, and the highest of the pictures in a PDF or SVG",
      .min = 50,
      .max = 1200});
+  v("lossless", s.lossless,
+    {.doc =
+         "true: all pixels of a PDF or SVG are exact; false: pictures of more than 96 x 96 pixels "
+         "are JPEGs of quality 95, without subsampling"});
 }
 
 }  // namespace lacuna

@@ -264,6 +264,22 @@ TEST_F(Figures, WithoutWhatTheyNameAreRefused) {
   expect_problem(R"("error_map")", R"("eror_map")", "/eror_map", "error_map");
 }
 
+TEST(FigurePictures, AreJpegsUnlessTheyAreToBeExact) {
+  Drawing d{100, 100, "", "Linux Biolinum O", 95, {}};
+  CodeImage noise{200, 200, {}};
+  Rng rng(1, 0, 0, Rng::Purpose::test);
+  for (int i = 0; i < 3 * 200 * 200; ++i) {
+    noise.rgb.push_back(static_cast<std::uint8_t>(255 * rng.next()));
+  }
+  d.add(ImageMark{0, 0, 100, 100, noise});
+  const std::string small = draw_pdf(d);
+  EXPECT_NE(small.find("/DCTDecode"), std::string::npos);
+  d.jpeg_quality = 0;
+  const std::string exact = draw_pdf(d);
+  EXPECT_EQ(exact.find("/DCTDecode"), std::string::npos);
+  EXPECT_GT(exact.size(), small.size());
+}
+
 TEST(FigureNumbers, HaveThreeDigits) {
   EXPECT_EQ(figure_number(0.0123456), "0.0123");
   EXPECT_EQ(figure_number(9.996), "10.0");
