@@ -25,6 +25,7 @@ void add_compare(CLI::App& app, int& code);
 void add_advise(CLI::App& app, int& code);
 void add_cache(CLI::App& app, int& code);
 void add_analyze(CLI::App& app, int& code);
+void add_trace(CLI::App& app, int& code);
 void add_sweep(CLI::App& app, int& code);
 void add_report(CLI::App& app, int& code);
 void add_archive(CLI::App& app, int& code);

@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
   lacuna::add_advise(app, code);
   lacuna::add_cache(app, code);
   lacuna::add_analyze(app, code);
+  lacuna::add_trace(app, code);
   lacuna::add_sweep(app, code);
   lacuna::add_report(app, code);
   lacuna::add_archive(app, code);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/space_analysis/space_analysis.h"
 #include "renderer/geometry/scene_data.h"
+#include "renderer/path/path_observer.h"
 
 namespace lacuna {
 
@@ -28,6 +30,10 @@ std::vector<OverlayMesh> gate_overlay(const VisibilityGates& gates, const GridTr
 /// The faces of every portal, a colour for each.
 std::vector<OverlayMesh> portal_overlay(const Portals& portals, const RegionLabels& regions,
                                         const GridTransform& grid);
+
+/// Each path as bars between its vertices, in a colour of its own; an emitter at infinity as a bar
+/// of the length of `box`.
+std::vector<OverlayMesh> path_overlay(std::span<const TracedPath> paths, const Bounds& box);
 
 /// A GLB in the coordinates of the scene's file, with these meshes and the scene's triangles and
 /// cameras; the scene is grey and transparent (alphaMode BLEND). Throws std::system_error.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "jobs/cli/overlay.h"
 #include "renderer/core/false_colour.h"
@@ -117,6 +118,28 @@ std::vector<OverlayMesh> gate_overlay(const VisibilityGates& gates, const GridTr
     Builder b(grid, "gate " + std::to_string(i), false_colour(static_cast<std::uint32_t>(i), 2));
     constexpr double least = 0.25;  // voxels: keeps gates of radius 0 visible
     b.disk(V3d(g.centre), V3d(g.axis), std::max<double>(g.radius, least));
+    meshes.push_back(b.take());
+  }
+  return meshes;
+}
+
+std::vector<OverlayMesh> path_overlay(std::span<const TracedPath> paths, const Bounds& box) {
+  const double length = (box.high - box.low).length();
+  GridTransform grid;
+  grid.voxel_size = length > 0 ? 0.01 * length : 0.01;
+  std::vector<OverlayMesh> meshes;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    Builder b(grid, "path " + std::to_string(i + 1) + " " + paths[i].letters,
+              false_colour(static_cast<std::uint32_t>(i), 4));
+    std::optional<V3d> last;
+    for (const TracedVertex& v : paths[i].vertices) {
+      V3d at = (V3d(v.x) - grid.origin) / grid.voxel_size;
+      if (v.infinite && !last) continue;  // the eye of a parallel projection
+      if (v.infinite) at = *last + V3d(v.x) * (length / grid.voxel_size);
+      if (last && at != *last) b.edge(*last, at);
+      if (!v.infinite) b.octahedron(at, knot);
+      last = at;
+    }
     meshes.push_back(b.take());
   }
   return meshes;

@@ -36,7 +36,7 @@ std::filesystem::path resolve(const RunContext& context, const std::string& what
 /// The parts of the scene that a job of this integrator needs.
 SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
   SceneNeeds needs = integrator.needs();
-  if (std::find(spec.layers.begin(), spec.layers.end(), ImageLayer::albedo) != spec.layers.end()) {
+  if (std::ranges::find(spec.layers, LayerRequest(ImageLayer::albedo)) != spec.layers.end()) {
     needs.materials = true;
   }
   if (light_paths_of_iteration(spec)) needs.light_tree = true;  // for unreached_emitters()

@@ -27,12 +27,19 @@ constexpr double flip_share = 0.05;  // of FLIP, which costs more than all other
 constexpr double progress_interval = 0.5;  // seconds
 constexpr double preview_interval = 1;     // seconds: shorter jobs write their picture at the end
 
+LightLayers light_layers_of(const JobSpec& spec) {
+  const std::vector<ImageLayer> named = named_layers(spec.layers);
+  const bool lengths = std::ranges::find(named, ImageLayer::lengths) != named.end();
+  return {lengths, light_paths_layers(spec.layers), most_edges(spec.integrator)};
+}
+
 }  // namespace
 
 RenderLoop::RenderLoop(const RenderTask& task)
     : task_(task),
       budget_(budget_of(task.spec)),
-      state_(task.spec, task.integrator.layers(task.spec.layers), memory_to_take()),
+      light_(light_layers_of(task.spec)),
+      state_(task.spec, layer_names(), memory_to_take()),
       frame_(task.spec.resolution[0], task.spec.resolution[1]),
       clock_(task.pool.threads()),
       checkpoints_(task.spec.checkpoint_seconds, checkpoint_share),
@@ -40,9 +47,18 @@ RenderLoop::RenderLoop(const RenderTask& task)
       progress_(progress_interval, checkpoint_share),
       flips_(0, flip_share) {}
 
+std::vector<std::string> RenderLoop::layer_names() {
+  std::vector<std::string> names = task_.integrator.layers(named_layers(task_.spec.layers));
+  own_layers_ = names.size();
+  names.insert(names.end(), light_.names().begin(), light_.names().end());
+  return names;
+}
+
 std::string RenderLoop::identity() const {
-  return checkpoint_key({picture_key(task_.spec), task_.content, version(),
-                         fmt::format("{}", fmt::join(state_.layers.names(), " "))});
+  std::string layers = fmt::format("{}", fmt::join(state_.layers.names(), " "));
+  for (const LightPathsLayer& l : light_paths_layers(task_.spec.layers))
+    layers += fmt::format(" {}", l.light);
+  return checkpoint_key({picture_key(task_.spec), task_.content, version(), layers});
 }
 
 void RenderLoop::stop_if_interrupted() const {
@@ -189,8 +205,9 @@ bool RenderLoop::iterate(const std::function<bool()>& late) {
                                                  .seed = task_.spec.seed,
                                                  .iteration = iteration,
                                                  .stop = stop,
-                                                 .layers = layers,
-                                                 .sampler = task_.spec.sampler},
+                                                 .layers = layers.first(own_layers_),
+                                                 .sampler = task_.spec.sampler,
+                                                 .light = {light_, layers.subspan(own_layers_)}},
                                                 frame_);
   } catch (const Stopped&) {
     clock_.stop();

@@ -73,7 +73,7 @@ class RenderLoop {
   std::uint64_t unsaved_iterations() const { return state_.spent.iterations - saved_.iterations; }
 
   const Film& film() const { return state_.film; }
-  /// The means of the integrator's own layers.
+  /// The means of the integrator's own layers, and of the layers of light.
   const LayerMeans& layers() const { return state_.layers; }
   const Curve& curve() const { return state_.curve; }
   const Counters& counters() const { return state_.counters; }
@@ -87,6 +87,7 @@ class RenderLoop {
   std::uint64_t refused_rays() const;  ///< as counted by RayCaster, for the whole job
 
  private:
+  std::vector<std::string> layer_names();
   std::string identity() const;
   /// `late`: whether the present iteration takes too long.
   End run_until(const Budget& budget, const std::function<bool()>& late);
@@ -108,6 +109,8 @@ class RenderLoop {
 
   RenderTask task_;
   Budget budget_;
+  LightLayers light_;
+  std::size_t own_layers_ = 0;  // of the integrator: those of light_ follow them
   RunState state_;
   Image frame_;
   bool merging_ = false;     // run() renders nothing

@@ -76,7 +76,8 @@ void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
     case ImageLayer::distributions:
     case ImageLayer::visibility_tests:
     case ImageLayer::negative:
-      return;  // the integrator's own (RenderLoop::layers())
+    case ImageLayer::lengths:
+      return;  // filled by each iteration (RenderLoop::layers())
   }
 }
 
@@ -102,6 +103,9 @@ std::map<std::string, std::string> attributes(const RenderTask& task, const Rend
       {"cpu_seconds", fmt::format("{:.3f}", loop.spent().cpu_seconds)},
       {"scene_hash", fmt::format("{:016x}", task.scene.data().content_hash)},
   };
+  for (const LightPathsLayer& l : light_paths_layers(task.spec.layers)) {
+    a[fmt::format("light.{}", l.name)] = l.light;
+  }
   if (const auto rmse = estimated_rmse(loop.film())) a["est_rmse"] = fmt::format("{:.17g}", *rmse);
   return a;
 }
@@ -146,7 +150,7 @@ void write_pictures(const JobFolder& folder, ExrPicture picture, const Reference
 void write_results(const RenderTask& task, const RenderLoop& loop) {
   const Film& film = loop.film();
   std::vector<ExrLayer> layers{{"", rgb, film.mean()}};
-  for (const ImageLayer layer : task.spec.layers) {
+  for (const ImageLayer layer : named_layers(task.spec.layers)) {
     add_layer(task, film, layer, layers);
     task.stop_if_late();
   }

@@ -41,7 +41,9 @@ std::optional<int> minutes_of(const JobSpec& spec) {
 double estimated_bytes(const JobSpec& spec, const RequestBasis& basis) {
   constexpr double base = 1024.0 * (1 << 20), of_scene = 24, of_pixel = 400, of_layer = 64;
   const double pixels = static_cast<double>(spec.resolution[0]) * spec.resolution[1];
-  const double layers = static_cast<double>(spec.layers.size());
+  double layers = static_cast<double>(spec.layers.size());
+  const auto lengths = std::ranges::find(spec.layers, LayerRequest(ImageLayer::lengths));
+  if (lengths != spec.layers.end()) layers += most_edges(spec.integrator) - 1;
   return base + of_scene * static_cast<double>(basis.scene_bytes) +
          pixels * (of_pixel + of_layer * layers);
 }

@@ -63,6 +63,10 @@ struct AutoSettings : PathLengths {
   Allow allow = Allow::unbiased;
   RankingMetric metric = RankingMetric::relmse;
 
+  static std::string_view without_lengths() {
+    return "chooses the method while it renders; `lacuna advise` names one";
+  }
+  static std::string_view without_letters() { return without_lengths(); }
   bool biased() const { return allow != Allow::unbiased; }
   bool consistent() const { return allow == Allow::consistent; }
   bool operator==(const AutoSettings&) const = default;

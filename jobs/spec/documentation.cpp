@@ -56,6 +56,7 @@ std::string type_text(const Type& type) {
     case Type::Kind::table:
       return fmt::format("object of any keys, each: {}", type_text(type.elements.front()));
     case Type::Kind::word:
+    case Type::Kind::word_or_object:
     case Type::Kind::choice:
       break;
   }
@@ -63,6 +64,7 @@ std::string type_text(const Type& type) {
   for (const Type::Name& n : type.names) {
     names += fmt::format("{}`{}`", names.empty() ? "" : ", ", n.name);
   }
+  if (type.kind == Type::Kind::word_or_object) names += ", or an object, see below";
   return (type.kind == Type::Kind::choice ? "one of these methods, see below: " : "one of ") +
          names;
 }
@@ -80,7 +82,7 @@ std::string default_text(const Member& member) {
 void put_names(std::string& page, const Member& member) {
   const Type& named =
       member.type.kind == Type::Kind::list ? member.type.elements.front() : member.type;
-  if (named.kind != Type::Kind::word) return;
+  if (named.kind != Type::Kind::word && named.kind != Type::Kind::word_or_object) return;
   page += fmt::format("\n`{}`:\n\n", member.name);
   for (const Type::Name& n : named.names) page += fmt::format("- `{}`: {}\n", n.name, n.doc);
 }
@@ -94,7 +96,8 @@ void put_parts(std::string& page, const Member& member, const std::string& path)
     put_section(page, member.type, path);
   }
   if (member.type.kind == Type::Kind::list &&
-      member.type.elements.front().kind == Type::Kind::object) {
+      (member.type.elements.front().kind == Type::Kind::object ||
+       member.type.elements.front().kind == Type::Kind::word_or_object)) {
     page +=
         fmt::format("\n## {}\n\nAn element of the list: {}\n", path, sentence(member.field.doc));
     put_section(page, member.type.elements.front(), path);

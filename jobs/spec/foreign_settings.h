@@ -98,6 +98,8 @@ struct ForeignSettings : PathLengths {
     }
     return {};
   }
+  static std::string_view without_lengths() { return "renders with another program"; }
+  static std::string_view without_letters() { return without_lengths(); }
   bool operator==(const ForeignSettings&) const = default;
 };
 

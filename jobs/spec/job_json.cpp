@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "jobs/spec/described_json.h"
+#include "renderer/settings/path_expression.h"
 
 namespace lacuna {
 namespace {
@@ -37,11 +38,57 @@ void check_layers_of_integrator(const JobSpec& spec, std::vector<Problem>& probl
   for (const ImageLayer layer : offered) allowed.push_back(enum_name(layer));
   const auto integrator = std::visit([](const auto& s) { return s.name; }, spec.integrator);
   for (std::size_t i = 0; i < spec.layers.size(); ++i) {
-    if (std::find(offered.begin(), offered.end(), spec.layers[i]) != offered.end()) continue;
+    const LayerRequest& layer = spec.layers[i];
+    const bool by_letters = layer.object.has_value();
+    if (!by_letters && std::ranges::find(offered, layer.word) != offered.end()) continue;
+    std::string_view reason;
+    if (by_letters) reason = without_letters(spec.integrator);
+    if (by_letters && reason.empty()) continue;
+    if (!by_letters && layer.word == ImageLayer::lengths) reason = without_lengths(spec.integrator);
     problems.push_back(
         {fmt::format("/layers/{}", i),
-         fmt::format("found \"{}\" in a job of integrator \"{}\"; allowed there: \"{}\"",
-                     enum_name(spec.layers[i]), integrator, fmt::join(allowed, "\", \""))});
+         fmt::format("found {} in a job of integrator \"{}\"{}{}; allowed there: \"{}\"{}",
+                     by_letters ? "an expression" : fmt::format("\"{}\"", enum_name(layer.word)),
+                     integrator, reason.empty() ? "" : ", which ", reason,
+                     fmt::join(allowed, "\", \""),
+                     without_letters(spec.integrator).empty() ? ", or an expression" : "")});
+  }
+}
+
+/// The expressions of light paths, and their names.
+void check_light_paths(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!is_good(problems, "/layers")) return;
+  std::vector<PathExpression> expressions;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < spec.layers.size(); ++i) {
+    if (!spec.layers[i].object) continue;
+    const LightPathsLayer& layer = *spec.layers[i].object;
+    const std::string at = fmt::format("/layers/{}", i);
+    if (++count > most_light_paths_layers) {
+      problems.push_back({at, fmt::format("found {} layers of expressions; allowed: {} at most",
+                                          count, most_light_paths_layers)});
+    }
+    try {
+      expressions.push_back(path_expression(layer.light));
+      if (count <= most_light_paths_layers) path_automaton(expressions);
+    } catch (const std::logic_error& e) {
+      problems.push_back({at + "/light", fmt::format("\"{}\": {}", layer.light, e.what())});
+    }
+    const auto is_plain = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '-';
+    };
+    if (!std::ranges::all_of(layer.name, is_plain)) {
+      problems.push_back(
+          {at + "/name",
+           fmt::format("found \"{}\"; allowed: letters, digits, _ and -", layer.name)});
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!spec.layers[k].object || spec.layers[k].object->name != layer.name) continue;
+      problems.push_back(
+          {at + "/name", fmt::format("found \"{}\" again; allowed: each name once", layer.name)});
+      break;
+    }
   }
 }
 
@@ -91,10 +138,10 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
 void check_layers_once(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!is_good(problems, "/layers")) return;
   for (auto it = spec.layers.begin(); it != spec.layers.end(); ++it) {
-    if (std::find(spec.layers.begin(), it, *it) == it) continue;
+    if (it->object || std::find(spec.layers.begin(), it, *it) == it) continue;
     problems.push_back(
         {fmt::format("/layers/{}", it - spec.layers.begin()),
-         fmt::format("found \"{}\" again; allowed: each layer once", enum_name(*it))});
+         fmt::format("found \"{}\" again; allowed: each layer once", enum_name(it->word))});
   }
 }
 
@@ -191,6 +238,7 @@ JobSpec parse_job(std::string_view json) {
   check_conflict("/integrator", spec.integrator, problems);
   check_candidates(spec, problems);
   check_layers_once(spec, problems);
+  check_light_paths(spec, problems);
   check_crop(spec, problems);
   check_camera(spec, problems);
   check_shard(spec, problems);

@@ -105,6 +105,25 @@ void describe(V& v, CropSettings& s) {
 /// Shards of a job, at most.
 inline constexpr int max_shards = 1 << 16;
 
+/// An element of a job's `layers`.
+using LayerRequest = WordOr<ImageLayer, LightPathsLayer>;
+
+/// The layers that are named by a word, and those of expressions.
+inline std::vector<ImageLayer> named_layers(const std::vector<LayerRequest>& all) {
+  std::vector<ImageLayer> named;
+  for (const LayerRequest& l : all) {
+    if (!l.object) named.push_back(l.word);
+  }
+  return named;
+}
+inline std::vector<LightPathsLayer> light_paths_layers(const std::vector<LayerRequest>& all) {
+  std::vector<LightPathsLayer> layers;
+  for (const LayerRequest& l : all) {
+    if (l.object) layers.push_back(*l.object);
+  }
+  return layers;
+}
+
 /// One job, as posted to the service or passed to `lacuna render`.
 struct JobSpec {
   std::string scene;
@@ -129,7 +148,7 @@ struct JobSpec {
   int shards = 1;
   int shard = 0;
   int threads = 0;
-  std::vector<ImageLayer> layers;
+  std::vector<LayerRequest> layers;
   PixelFilter pixel_filter = PixelFilter::box;
   PixelType pixel_type = PixelType::single_float;
   double checkpoint_seconds = 10;
@@ -195,8 +214,8 @@ void describe(V& v, JobSpec& s) {
      .max = max_shards});
   v("threads", s.threads, {.doc = "number of threads; 0: one per core", .min = 0, .max = 1024});
   v("layers", s.layers,
-    {.doc = "additional layers of image.exr; strategies and distributions only with a method that "
-            "has them",
+    {.doc = "additional layers of image.exr: names, of which some need a method that has them, and "
+            "objects for the light whose paths match an expression, at most 8",
      .max = 16});
   v("pixel_filter", s.pixel_filter, {.doc = "reconstruction filter of a pixel"});
   v("pixel_type", s.pixel_type, {.doc = "precision of image.exr"});

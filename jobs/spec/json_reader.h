@@ -125,6 +125,8 @@ class ObjectReader {
   void read_list(const JsonCursor& found, std::vector<T>& out, const Field& field) const;
   template <class T>
   void read_name_or(const JsonCursor& found, NameOr<T>& out, const Field& field) const;
+  template <class E, class T>
+  void read_word_or(const JsonCursor& found, WordOr<E, T>& out) const;
   template <class T>
   void read_table(const JsonCursor& found, JsonTable<T>& out, const Field& field) const;
   template <class... Ts>
@@ -180,6 +182,8 @@ void ObjectReader::read_value(const JsonCursor& found, T& out, const Field& fiel
     read_table(found, out, field);
   } else if constexpr (is_name_or<T>) {
     read_name_or(found, out, field);
+  } else if constexpr (is_word_or<T>) {
+    read_word_or(found, out);
   } else if constexpr (is_array<T>) {
     read_array(found, out, field);
   } else if constexpr (is_vector<T>) {
@@ -222,6 +226,15 @@ void ObjectReader::read_name_or(const JsonCursor& found, NameOr<T>& out, const F
     read_value(found, out.name, field);
   } else {
     found.refuse("a name, or an object");
+  }
+}
+
+template <class E, class T>
+void ObjectReader::read_word_or(const JsonCursor& found, WordOr<E, T>& out) const {
+  if (found.value().is_object()) {
+    read_settings(found, out.object.emplace(), values_);
+  } else {
+    read_enum(found, out.word);
   }
 }
 

@@ -43,6 +43,8 @@ OrderedJson ObjectWriter::value_of(const T& member) {
     return member.value ? OrderedJson(*member.value) : OrderedJson(auto_name);
   } else if constexpr (is_name_or<T>) {
     return member.object ? value_of(*member.object) : OrderedJson(member.name);
+  } else if constexpr (is_word_or<T>) {
+    return member.object ? value_of(*member.object) : value_of(member.word);
   } else if constexpr (is_array<T> || is_vector<T>) {
     OrderedJson list = OrderedJson::array();
     for (const auto& element : member) list.push_back(value_of(element));

@@ -26,4 +26,21 @@ inline constexpr bool is_name_or = false;
 template <class T>
 inline constexpr bool is_name_or<NameOr<T>> = true;
 
+/// A member that is one of an enum's words, or an object with T's settings.
+template <class E, class T>
+struct WordOr {
+  E word{};  ///< unused if there is an object
+  std::optional<T> object;
+
+  WordOr() = default;
+  WordOr(E of) : word(of) {}
+  WordOr(T of) : object(std::move(of)) {}
+  bool operator==(const WordOr&) const = default;
+};
+
+template <class>
+inline constexpr bool is_word_or = false;
+template <class E, class T>
+inline constexpr bool is_word_or<WordOr<E, T>> = true;
+
 }  // namespace lacuna

@@ -113,6 +113,13 @@ OrderedJson name_schema(const Type& type) {
   return {{"oneOf", {name, object}}};
 }
 
+/// One of some words, or an object in their place.
+OrderedJson word_or_object_schema(const Type& type) {
+  OrderedJson object = {{"type", "object"}};
+  put_members(object, type);
+  return {{"oneOf", {enum_schema(type), object}}};
+}
+
 std::string type_name(Type::Kind kind) {
   switch (kind) {
     case Type::Kind::boolean:
@@ -135,6 +142,7 @@ std::string type_name(Type::Kind kind) {
 OrderedJson schema_of(const Type& type) {
   if (type.kind == Type::Kind::choice) return choice_schema(type);
   if (type.kind == Type::Kind::word) return enum_schema(type);
+  if (type.kind == Type::Kind::word_or_object) return word_or_object_schema(type);
   if (type.kind == Type::Kind::auto_number) return auto_schema(type);
   if (type.kind == Type::Kind::name_or_object) return name_schema(type);
   if (type.kind == Type::Kind::any) return OrderedJson::object();

@@ -25,6 +25,7 @@ struct Type {
     string,
     name_or_object,
     word,
+    word_or_object,
     array,
     list,
     object,
@@ -43,9 +44,9 @@ struct Type {
   bool published = false;  ///< an object that may have `values_key`
   Limits limits = {};      ///< of a number; of the length of a string, name or list
   std::size_t array_size = 0;
-  std::vector<Name> names;      ///< word, choice
+  std::vector<Name> names;      ///< word, word_or_object, choice
   std::vector<Type> elements;   ///< array, list, table: one; choice: an object for each name
-  std::vector<Member> members;  ///< object, or alternative to a name
+  std::vector<Member> members;  ///< object, or alternative to a name or word
 };
 
 /// One line of a table.
@@ -113,6 +114,10 @@ Type TypeReader::type_of(const T& value, const Field& field) {
     type = object_of(typename decltype(T::object)::value_type{});
     type.kind = Type::Kind::name_or_object;
     type.limits = length_limits(field);
+  } else if constexpr (is_word_or<T>) {
+    type = object_of(typename decltype(T::object)::value_type{});
+    type.kind = Type::Kind::word_or_object;
+    type.names = type_of(value.word, field).names;
   } else if constexpr (NamedEnum<T>) {
     type.kind = Type::Kind::word;
     for (const auto& v : EnumTable<T>::values) type.names.push_back({v.name, v.doc});

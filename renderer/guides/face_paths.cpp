@@ -40,7 +40,7 @@ class PathsFromFaces {
           if (v.kind != Vertex::Kind::surface || depth == edges_ || !direct_.active()) return;
           if (!v.bsdf->connectible()) return;
           direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
-                         [&](const Ray& ray, const Rgb& value, const V3f&) {
+                         [&](const Ray& ray, const Rgb& value, const DirectLight::Sample&) {
                            shadows.add(ray, {i, luminance(value)});
                          });
         },

@@ -127,9 +127,9 @@ class PairedBdpt final : public Bdpt {
     std::vector<TrainingSamples::Part> samples(static_cast<std::size_t>(tiling.tiles()));
     std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
     const auto work = [&](int i, Counters& counters, Splats& splats) {
-      Pairs pairs{EyePaths(settings_.max_depth, counts), LightBatch(setting, guide_)};
+      Pairs pairs{EyePaths(settings_.max_depth, counts, context), LightBatch(setting, guide_)};
       const Base::TilePass pass{context, image, counters};
-      Walk walk(context.scene, guide_, Base::eye_limits(counts), counters);
+      Walk walk(context.scene, guide_, Base::eye_limits(context, counts), counters);
       const Tile tile = tiling.tile(i);
       for (int b = 0; b < tile.blocks(); ++b) {
         Base::start(pass, tile.block(b), pairs.eye);
@@ -209,7 +209,8 @@ class PairedBdpt final : public Bdpt {
     Base::queue_connection(eye, EmitterEndpoint{e, guide_}, 1, known, pairs.eye);
     pairs.light.for_each_vertex(path, [&](std::size_t j, int index) {
       if (index >= longest || !pairs.light.connectible(j, index)) return;
-      Base::queue_connection(eye, pairs.light.end(j, index), 1, known, pairs.eye);
+      Base::queue_connection(eye, pairs.light.end(j, index), 1, known, pairs.eye,
+                             [&] { return pairs.light.path_to(j, index); });
     });
   }
 
@@ -223,6 +224,7 @@ class PairedBdpt final : public Bdpt {
       const Vertex& v = pairs.eye.vertex(at.path, at.depth);
       const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
       const std::uint32_t pixel = pairs.eye.pixels[at.path];
+      const LightSink& light = pass.context.light;
       Rgb sum(0, 0, 0);
       // Eye and light have each met a blended surface with probability alpha: once too often.
       const float covered = pass.context.scene.coverage(v.surface);
@@ -235,6 +237,9 @@ class PairedBdpt final : public Bdpt {
             sum += value * w;
             layers_.merge(pass.context.layers, p.index + 1, at.depth + 1,
                           {pixel, value / covered, w});
+            if (!light) return;
+            const auto matches = matches_beyond(light.automaton(), eye, p.wp, p.letters);
+            light.add(pixel, p.index + at.depth, matches, value * w / covered);
           });
       sum /= covered;
       Base::contribute(pass, pairs.eye, at.path, at.depth, sum);
@@ -335,11 +340,11 @@ class ResampledBdpt final : public Bdpt {
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto index = static_cast<std::size_t>(i);
       EyePart part{lights, connections_.resampling().roulette * cell_statistics_.mean(index),
-                   EyePaths(settings_.max_depth, counts),
+                   EyePaths(settings_.max_depth, counts, context),
                    CellStatistics::Accumulator(cell_statistics_.cells())};
       const auto record = [&](const BdptContribution& c) { arrived(c, part.accumulator); };
       const Base::TilePass pass{context, image, counters};
-      Walk walk(context.scene, guide_, Base::eye_limits(counts), counters);
+      Walk walk(context.scene, guide_, Base::eye_limits(context, counts), counters);
       const NextEvent next_event(context.scene, EmitterChoice::power);
       const Tile tile = tiling.tile(i);
       for (int b = 0; b < tile.blocks(); ++b) {

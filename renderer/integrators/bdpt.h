@@ -15,12 +15,14 @@ namespace lacuna {
 struct BdptContribution {
   std::uint8_t path = 0;          ///< index of the eye path in its batch
   std::uint8_t distribution = 0;  ///< VertexSample::distribution
+  PathMatches matches = 0;
   float survival = 1;          ///< probability of making the connection; `value` is divided by it
   float throughput = 0;        ///< luminance of the eye vertex' throughput
   std::uint32_t cell = 0;      ///< of the eye vertex, for CellStatistics
   Rgb value{0, 0, 0};          ///< unweighted
   float weight = 0;            ///< MIS
   std::uint16_t s = 0, t = 0;  ///< vertices sampled from the light and from the eye
+  std::uint32_t traced = 0;    ///< number of the path in the observer; 0: none
 };
 
 /// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11), except for the selection of the light
@@ -34,8 +36,16 @@ class Bdpt : public GuidedIntegrator {
   using GuidedIntegrator::guide_;
 
   struct EyePaths : EyeBatch {
-    EyePaths(int max_depth, const SampleCounts& n) : EyeBatch(max_depth), counts(n) {}
+    EyePaths(int max_depth, const SampleCounts& n, const IterationContext& of)
+        : EyeBatch(max_depth), context(of), counts(n), letters(of.light.automaton()) {
+      keep_whole_paths(of.observer != nullptr);
+    }
+    bool is_observed(std::size_t path) const {
+      return context.observer != nullptr && context.observer->watches(pixels[path]);
+    }
+    const IterationContext& context;
     SampleCounts counts;
+    const PathAutomaton* letters;
     GatheredLight gathered{*this};  // for a guide that learns
     bool gathers = false;
     ShadowQueue<BdptContribution> queue;  // of connections
@@ -57,7 +67,10 @@ class Bdpt : public GuidedIntegrator {
   }
   /// The same for a strategy of the pyramid (StrategyLayers): also fills its layer.
   void contribute(const TilePass& pass, EyePaths& batch, const BdptContribution& c) const {
-    contribute(pass, batch, c.path, c.t - 1, c.value * c.weight);
+    const Rgb value = c.value * c.weight;
+    contribute(pass, batch, c.path, c.t - 1, value);
+    pass.context.light.add(batch.pixels[c.path], c.s + c.t - 1, c.matches, value);
+    if (c.traced != 0) pass.context.observer->arrived(c.traced, value);
     layers_.strategy(pass.context.layers, c.s, c.t, {batch.pixels[c.path], c.value, c.weight});
   }
 
@@ -71,11 +84,23 @@ class Bdpt : public GuidedIntegrator {
     if (batch.counts.nee > 0) {
       next_event.set_ratio(*e, v, batch.vertex(i, depth - 1), depth);
     }
-    contribute(pass, batch,
-               {.path = static_cast<std::uint8_t>(i),
-                .value = v.throughput * e->emission,
-                .weight = static_cast<float>(hit_weight(v, depth, *e, batch.counts, guide_)),
-                .t = static_cast<std::uint16_t>(depth + 1)});
+    BdptContribution hit{
+        .path = static_cast<std::uint8_t>(i),
+        .matches = matches_at_hit(batch.letters, v),
+        .value = v.throughput * e->emission,
+        .weight = static_cast<float>(hit_weight(v, depth, *e, batch.counts, guide_)),
+        .t = static_cast<std::uint16_t>(depth + 1)};
+    if (batch.is_observed(i)) hit.traced = observe(batch, hit, {});
+    contribute(pass, batch, hit);
+  }
+
+  /// Shows the observer a contribution before its shadow ray is traced. `from_light`: the vertices
+  /// sampled from the light.
+  [[gnu::cold]] static std::uint32_t observe(const EyePaths& batch, const BdptContribution& c,
+                                             std::span<const Vertex* const> from_light) {
+    return batch.context.observer->add(
+        {.iteration = batch.context.iteration, .s = c.s, .t = c.t, .weight = c.weight},
+        batch.path_to(c.path, c.t - 1), from_light);
   }
 
   /// Largest s of connections to an eye vertex `depth` edges from the eye; 0: none.
@@ -86,16 +111,26 @@ class Bdpt : public GuidedIntegrator {
 
   /// Connects `eye` and `light` and queues the contribution, divided by `samples`: the expected
   /// number of samples of this light vertex. `known`: the members of the contribution that do not
-  /// follow from the connection.
-  template <class Light>
-  static void queue_connection(const SurfaceEndpoint& eye, const Light& light, double samples,
-                               BdptContribution known, EyePaths& batch) {
+  /// follow from the connection. `from_light()`: the vertices of a light path, for the observer.
+  template <class Light, class FromLight = std::vector<const Vertex*> (*)()>
+  static void queue_connection(
+      const SurfaceEndpoint& eye, const Light& light, double samples, BdptContribution known,
+      EyePaths& batch, FromLight&& from_light = [] { return std::vector<const Vertex*>{}; }) {
     const Connection c = connect(eye, light);
     if (!c) return;
     known.value = c.contribution / static_cast<float>(samples);
     known.weight = static_cast<float>(weight(eye, light, c, batch.counts));
     known.s = static_cast<std::uint16_t>(light.index + 1);
     known.t = static_cast<std::uint16_t>(eye.index + 1);
+    known.matches = matches_between(batch.letters, eye, light, c.w);
+    if (batch.is_observed(known.path)) [[unlikely]] {
+      if constexpr (std::is_same_v<Light, EmitterEndpoint>) {
+        const Vertex emitter = next_event_vertex(light.e);
+        known.traced = observe(batch, known, std::array{&emitter});
+      } else {
+        known.traced = observe(batch, known, from_light());
+      }
+    }
     const Ray ray = shadow_ray(eye, light, c);
     batch.one_ray ? batch.one_ray->add(ray, known, batch.queue) : batch.queue.add(ray, known);
   }
@@ -161,13 +196,17 @@ class Bdpt : public GuidedIntegrator {
             .camera = context.camera,
             .max_depth = settings_.max_depth,
             .roulette_depth = settings_.roulette_depth,
-            .counts = counts};
+            .counts = counts,
+            .letters = context.light.automaton(),
+            .observer = context.observer,
+            .iteration = context.iteration};
   }
-  WalkLimits eye_limits(const SampleCounts& counts) const {
+  WalkLimits eye_limits(const IterationContext& context, const SampleCounts& counts) const {
     return {.max_depth = settings_.max_depth,
             .roulette_depth = settings_.roulette_depth,
             .packets = true,
-            .counts = eye_side(counts)};
+            .counts = eye_side(counts),
+            .letters = context.light.automaton()};
   }
   static std::int64_t pixels(const Image& image) {
     return std::int64_t{image.width} * image.height;

@@ -21,7 +21,12 @@ class Light final : public GuidedIntegrator {
                                    context.camera,
                                    settings_.max_depth,
                                    settings_.roulette_depth,
-                                   {.hit = 0, .splat = static_cast<double>(paths)}};
+                                   {.hit = 0, .splat = static_cast<double>(paths)},
+                                   false,
+                                   EmitterChoice::power,
+                                   context.light.automaton(),
+                                   context.observer,
+                                   context.iteration};
     return light_pass(
         {context, setting, paths, image}, this->guide_,
         [](std::size_t, const LightBatch&, std::size_t) {}, [](const Splat&) {});

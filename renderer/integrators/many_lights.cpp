@@ -216,7 +216,8 @@ struct ManyLights<V>::Part {
   /// A contribution of next event estimation, pending its shadow ray.
   struct Direct {
     Rgb value;
-    std::size_t path;
+    std::uint32_t path;
+    int edges;
   };
 
   EyeBatch batch;
@@ -257,8 +258,11 @@ class ManyLights<V>::TilePass {
   }
 
  private:
-  /// Adds emission or direct light to the pixel of path `i`.
-  void contribute(std::size_t i, const Rgb& value) { batch_.radiance[i] += value; }
+  /// Adds emission or direct light, of a path of `edges` edges, to the pixel of path `i`.
+  void contribute(std::size_t i, int edges, const Rgb& value) {
+    batch_.radiance[i] += value;
+    if (with_.range.is_first()) context_.light.add(batch_.pixels[i], edges, 0, value);
+  }
 
   void trace_paths() {
     Walk walk(context_.scene, integrator_.guide_,
@@ -273,8 +277,9 @@ class ManyLights<V>::TilePass {
       batch_.radiance.fill(Rgb(0, 0, 0));
       return;
     }
-    part_.shadows.flush(context_.scene.rays(), counters_,
-                        [&](const typename Part::Direct& d) { contribute(d.path, d.value); });
+    part_.shadows.flush(context_.scene.rays(), counters_, [&](const typename Part::Direct& d) {
+      contribute(d.path, d.edges, d.value);
+    });
   }
 
   /// Visits a vertex of eye path `i`; false if the path ends.
@@ -285,9 +290,9 @@ class ManyLights<V>::TilePass {
     // Virtual lights also sample this edge, except for the part above the bound.
     const bool shared = !first && depth == part_.shaded[i] + 1 && !before.delta;
     if (shared && integrator_.by_lights()) {
-      contribute(i, emitted(v) * missing(before, v));
+      contribute(i, depth, emitted(v) * missing(before, v));
     } else {
-      contribute(i, direct_.hit(v, before, depth));
+      contribute(i, depth, direct_.hit(v, before, depth));
     }
     if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
     const bool lit_by_lights = v.bsdf->is_vpl_receiver(integrator_.least_alpha_);
@@ -304,8 +309,8 @@ class ManyLights<V>::TilePass {
     if (v.bsdf->connectible() && direct_.active() &&
         !(first && lit_by_lights && integrator_.by_lights())) {
       direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
-                     [&](const Ray& ray, const Rgb& value, const V3f&) {
-                       part_.shadows.add(ray, {value, i});
+                     [&](const Ray& ray, const Rgb& value, const DirectLight::Sample&) {
+                       part_.shadows.add(ray, {value, static_cast<std::uint32_t>(i), depth + 1});
                      });
     }
     return settings_.compensation || !integrator_.by_lights() || !lit_by_lights;
@@ -336,6 +341,10 @@ class ManyLights<V>::TilePass {
     part_.gather.gather(part_.points, part_.of_points, counters_);
     for (std::size_t k = 0; k < part_.points.size(); ++k) {
       LightSum& sum = part_.sums[part_.paths[k]] = part_.of_points[k];
+      part_.gather.for_each_length(k, [&](int edges, const V3d& value) {
+        if (edges > part_.points[k].edges) return;  // not gathered
+        context_.light.add(part_.points[k].pixel, part_.points[k].depth + 1 + edges, 0, Rgb(value));
+      });
       if (with_.filter != nullptr) {
         with_.filter->add(part_.points[k], sum.value);
         sum.value = V3d(0, 0, 0);  // add_filtered() adds it when all pixels have been gathered

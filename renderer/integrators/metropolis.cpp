@@ -111,9 +111,14 @@ class Metropolis final : public Integrator {
       // A job's seed is below 2^53.
       const std::uint64_t seed = context.seed | static_cast<std::uint64_t>(i) << 53;
       Image sample(image.width, image.height);
-      counters += direct_.iterate(
-          {context.scene, context.camera, context.pool, seed, context.iteration, context.stop},
-          sample);
+      counters += direct_.iterate({.scene = context.scene,
+                                   .camera = context.camera,
+                                   .pool = context.pool,
+                                   .seed = seed,
+                                   .iteration = context.iteration,
+                                   .stop = context.stop,
+                                   .light = context.light.times(share)},
+                                  sample);
       for (std::size_t k = 0; k < image.pixels.size(); ++k) {
         image.pixels[k] += sample.pixels[k] * share;
       }
@@ -308,11 +313,16 @@ class Metropolis final : public Integrator {
     void deposit(const ChainState& state, double weight, Splats& splats) const {
       if (weight == 0 || state.scalar == 0) return;
       const double scale = weight * share / state.scalar;
+      const auto scaled = [&](const Rgb& value) {
+        return Rgb(static_cast<float>(double(value.x) * scale),
+                   static_cast<float>(double(value.y) * scale),
+                   static_cast<float>(double(value.z) * scale));
+      };
       for (const ChainState::Pixel& p : state.pixels) {
-        const Rgb value(static_cast<float>(double(p.value.x) * scale),
-                        static_cast<float>(double(p.value.y) * scale),
-                        static_cast<float>(double(p.value.z) * scale));
-        splats.push_back({value, 1.0F, p.index, 0});
+        splats.push_back({scaled(p.value), 1.0F, p.index, Splat::any_length});
+      }
+      for (const ChainState::Part& p : state.parts) {
+        splats.push_back({scaled(p.value), 1.0F, p.index, p.edges, p.matches, true});
       }
     }
 

@@ -6,6 +6,7 @@
 #include "renderer/guides/make_guide.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/emitter_selection.h"
+#include "renderer/path/path_matches.h"
 #include "renderer/path/photon_map.h"
 #include "renderer/settings/photon_mapping_settings.h"
 
@@ -105,9 +106,9 @@ class PhotonMapping final : public Integrator {
     photons_.begin(paths);
     caustics_.begin(density_.caustic_paths);
     if (context.scene.emitters().empty()) return {};
-    const LightPathSetting setting{context.scene,          context.camera,
-                                   settings_.max_depth,    settings_.roulette_depth,
-                                   SampleCounts{.hit = 0}, true};
+    const LightPathSetting setting{
+        context.scene,          context.camera, settings_.max_depth,  settings_.roulette_depth,
+        SampleCounts{.hit = 0}, true,           EmitterChoice::power, context.light.automaton()};
     // Photons that no look-up uses are not stored: with next event estimation, one of each path.
     const Wanted kept = density_.final_gather ? Wanted{true, true, true} : at_first();
     return lacuna::light_pass(
@@ -160,7 +161,8 @@ class PhotonMapping::TilePass {
         walk_(context.scene, mapping.guide_,
               {.max_depth = settings_.max_depth,
                .roulette_depth = settings_.roulette_depth,
-               .packets = true},
+               .packets = true,
+               .letters = context.light.automaton()},
               counters) {}
 
   void render(const Tile& tile) {
@@ -171,7 +173,7 @@ class PhotonMapping::TilePass {
       walk_.trace_paths(
           batch_.states, [this](std::size_t i, int depth) { return visit(i, depth); }, *this);
       shadows_.flush(context_.scene.rays(), counters_,
-                     [&](const Direct& d) { contribute(d.path, d.value); });
+                     [&](const Direct& d) { contribute(d.path, d.edges, d.matches, d.value); });
       look_up();
       for (std::size_t k = 0; k < batch_.states.size(); ++k) {
         accumulate(image_.pixels[batch_.pixels[k]], batch_.radiance[k], counters_);
@@ -191,16 +193,28 @@ class PhotonMapping::TilePass {
  private:
   struct Direct {
     Rgb value;
-    std::size_t path;
+    std::uint8_t path;
+    PathMatches matches;
+    int edges;
   };
   struct LookUp {
     std::uint32_t path;
     int depth;
     bool first;  ///< at the first rough vertex
   };
+  /// What one photon adds to a look-up, for the layers of light.
+  struct PhotonPart {
+    V3d value;
+    int edges;
+    PathMatches matches;
+  };
 
-  /// Adds a contribution to the pixel of path `i`. All contributions go through this function.
-  void contribute(std::size_t i, const Rgb& value) { batch_.radiance[i] += value; }
+  /// Adds a contribution to the pixel of path `i`. All contributions but those of photons go
+  /// through this function.
+  void contribute(std::size_t i, int edges, PathMatches matches, const Rgb& value) {
+    batch_.radiance[i] += value;
+    context_.light.add(batch_.pixels[i], edges, matches, value);
+  }
 
   /// Updates the stage for the edge to the vertex at `depth` and adds the emission there, if it
   /// counts; false if the path ends on that edge.
@@ -215,7 +229,10 @@ class PhotonMapping::TilePass {
     const bool first_edge = stage == Stage::at_first;
     if (first_edge) stage = mapping_.density_.final_gather ? Stage::gathering : Stage::last_edge;
     const bool hit = first_edge ? settings_.next_event_estimation : stage == Stage::seeing;
-    if (hit) contribute(i, direct_.hit(v, last, depth));
+    if (hit) {
+      contribute(i, depth, matches_at_hit(context_.light.automaton(), v),
+                 direct_.hit(v, last, depth));
+    }
     return stage != Stage::last_edge;
   }
 
@@ -236,8 +253,10 @@ class PhotonMapping::TilePass {
     }
     if (direct_.active() && v.bsdf->connectible() && (nee || !rough)) {
       direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
-                     [&](const Ray& ray, const Rgb& value, const V3f&) {
-                       shadows_.add(ray, {value, i});
+                     [&](const Ray& ray, const Rgb& value, const DirectLight::Sample& to) {
+                       const auto matches =
+                           matches_beyond(context_.light.automaton(), endpoint(v, depth), to.w);
+                       shadows_.add(ray, {value, static_cast<std::uint8_t>(i), matches, depth + 1});
                      });
     }
     if (!rough) return true;
@@ -253,30 +272,38 @@ class PhotonMapping::TilePass {
     for (const LookUp& at : look_ups_) {
       stop_.check(context_);
       if (!at.first) {
-        contribute(at.path, estimate(mapping_.photons_, {true, true, true}, at) / paths_);
+        add_photons(mapping_.photons_, {true, true, true}, at, paths_);
         continue;
       }
-      if (first.any()) {
-        contribute(at.path, estimate(mapping_.photons_, first, at) / paths_);
-      }
+      if (first.any()) add_photons(mapping_.photons_, first, at, paths_);
       if (apart) {
-        contribute(at.path, estimate(mapping_.caustics_, {false, true, false}, at) /
-                                static_cast<float>(mapping_.density_.caustic_paths));
+        add_photons(mapping_.caustics_, {false, true, false}, at,
+                    static_cast<float>(mapping_.density_.caustic_paths));
       }
     }
     look_ups_.clear();
     look_up_seconds_ += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
   }
 
-  /// Estimate of the radiance by the photons of `map` around an eye vertex, times the number of
-  /// their light paths.
-  Rgb estimate(const PhotonMap& map, const Wanted& wanted, const LookUp& at) {
+  SurfaceEndpoint endpoint(const Vertex& v, int depth) const {
+    return {v, depth, Transport::radiance, mapping_.guide_};
+  }
+
+  /// Adds the radiance that the photons of `map` around an eye vertex, from `paths` light paths,
+  /// estimate.
+  void add_photons(const PhotonMap& map, const Wanted& wanted, const LookUp& at, float paths) {
     const Vertex& v = batch_.vertex(at.path, at.depth);
-    const SurfaceEndpoint eye{v, at.depth, Transport::radiance, mapping_.guide_};
+    const SurfaceEndpoint eye = endpoint(v, at.depth);
     V3d sum(0);
+    parts_.clear();
     const auto add = [&](const Photon& p, double d2, float count) {
       if (p.index + at.depth > settings_.max_depth || !wanted.of(p)) return;
-      sum += V3d(merged(eye, p) * count) * kernel(d2);
+      const V3d value = V3d(merged(eye, p) * count) * kernel(d2);
+      sum += value;
+      if (context_.light) {
+        parts_.push_back({value, p.index + at.depth,
+                          matches_beyond(context_.light.automaton(), eye, p.wp, p.letters)});
+      }
     };
     double radius2 = map.radius() * map.radius();
     if (mapping_.density_.nearest > 0) {
@@ -290,7 +317,12 @@ class PhotonMapping::TilePass {
     }
     // Eye and light have each met a blended surface with probability alpha: once too often.
     const double covered = double(context_.scene.coverage(v.surface));
-    return Rgb(sum / (std::numbers::pi * radius2 * covered));
+    const double area = std::numbers::pi * radius2 * covered;
+    batch_.radiance[at.path] += Rgb(sum / area) / paths;
+    for (const PhotonPart& part : parts_) {
+      context_.light.add(batch_.pixels[at.path], part.edges, part.matches,
+                         Rgb(part.value / area) / paths);
+    }
   }
 
   /// Kernel of the density estimate at squared distance `d2`, in units of the radius; its mean over
@@ -319,6 +351,7 @@ class PhotonMapping::TilePass {
   ShadowQueue<Direct> shadows_;
   std::array<Stage, EyeBatch::size> stage_ = {};
   std::vector<LookUp> look_ups_;
+  std::vector<PhotonPart> parts_;          // of one look-up
   std::vector<PointTree::Found> nearest_;  // room for one more than Density::nearest
   double look_up_seconds_ = 0;
   SparseStop stop_;

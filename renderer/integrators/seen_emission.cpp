@@ -224,6 +224,7 @@ Counters SeenEmission::add(const IterationContext& context, double samples, Imag
       counters.samples += static_cast<std::uint64_t>(n);
       counters.rays += static_cast<std::uint64_t>(n);
       accumulate(image.pixels[index], sum / n, counters);
+      context.light.add_seen(index, sum / n);
     }
   });
 }

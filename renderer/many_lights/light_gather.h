@@ -32,7 +32,8 @@ class LightGather {
         terms_(terms),
         visibility_(visibility),
         sampler_(gathered.sampler),
-        range_(gathered.range) {}
+        range_(gathered.range),
+        by_length_(context.light) {}
 
   /// Writes the sum of `points[i]` to `sums[i]`, for at most Lanes::size points. Throws
   /// IterationStopped when the context's stop() returns true.
@@ -40,6 +41,7 @@ class LightGather {
     states_.clear();
     for (const ShadingPoint& p : points) states_.push_back(visibility_.at(p, context_));
     visibility_.share(points, std::span(states_), context_);
+    if (by_length_) lengths_.assign(points.size() * length_count(), V3d(0));
     if (sampler_ != nullptr) {
       gather_sampled(points, sums, counters);
     } else {
@@ -48,11 +50,21 @@ class LightGather {
     flush(sums, counters);
   }
 
+  /// Calls `use(edges, sum)` for the parts of the last sum of `point` by the edges between a light
+  /// and its emitter, if the iteration has layers of light.
+  template <class Use>
+  void for_each_length(std::size_t point, Use&& use) const {
+    if (!by_length_) return;
+    for (std::size_t k = 0; k < length_count(); ++k) {
+      use(static_cast<int>(k), lengths_[point * length_count() + k]);
+    }
+  }
+
  private:
   /// The contribution of a light that a shadow ray must test.
   struct PendingContribution {
     Rgb value;
-    std::uint32_t point;
+    std::uint16_t point, edges;
     [[no_unique_address]] typename Visibility::Tested test;
   };
   struct Test {
@@ -107,14 +119,18 @@ class LightGather {
     counters.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
     if (term_.lit == 0) return;
     visibility_.decide(state, block, term_, decision_);
-    sum.value += V3d(double(sum_of_products(term_.r, decision_.untested)),
-                     double(sum_of_products(term_.g, decision_.untested)),
-                     double(sum_of_products(term_.b, decision_.untested)));
+    const V3d untested(double(sum_of_products(term_.r, decision_.untested)),
+                       double(sum_of_products(term_.g, decision_.untested)),
+                       double(sum_of_products(term_.b, decision_.untested)));
+    sum.value += untested;
+    const int edges = by_length_ ? terms_.lights().edges(block) : 0;
+    if (by_length_) length(sample.point, edges) += untested;
     for_each_bit(decision_.tests, [&](int i) {
       tests_[static_cast<std::size_t>(i)].push_back(
           {terms_.ray(at, block, i),
            {Rgb(term_.r[i], term_.g[i], term_.b[i]) * decision_.gain[i],
-            static_cast<std::uint32_t>(sample.point), visibility_.tested(state, i)}});
+            static_cast<std::uint16_t>(sample.point), static_cast<std::uint16_t>(edges),
+            visibility_.tested(state, i)}});
     });
     sum.tests += static_cast<std::uint64_t>(__builtin_popcountll(decision_.tests));
   }
@@ -130,8 +146,14 @@ class LightGather {
   void flush(std::span<LightSum> sums, Counters& counters) {
     queue_.flush(context_.scene.rays(), counters, [&](const PendingContribution& l) {
       sums[l.point].value += V3d(l.value);
+      if (by_length_) length(l.point, l.edges) += V3d(l.value);
       visibility_.seen(states_[l.point], l.test);
     });
+  }
+
+  std::size_t length_count() const { return terms_.lights().lengths(); }
+  V3d& length(std::size_t point, int edges) {
+    return lengths_[point * length_count() + static_cast<std::size_t>(edges)];
   }
 
   const IterationContext& context_;
@@ -139,7 +161,9 @@ class LightGather {
   const Visibility& visibility_;
   VplSampler* sampler_;
   BlockRange range_;
-  std::size_t blocks_ = 0;                            // processed
+  bool by_length_;
+  std::vector<V3d> lengths_;  // of each point, the sums by the edges of its lights
+  std::size_t blocks_ = 0;    // processed
   std::vector<typename Visibility::At> states_;       // of each point
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<PendingContribution> queue_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -103,6 +104,12 @@ class VplSet {
     return ends_[std::min(static_cast<std::size_t>(edges), ends_.size() - 1)];
   }
   std::size_t blocks() const { return blocks_.size(); }
+  /// The numbers of edges(): 0 to lengths() - 1.
+  std::size_t lengths() const { return ends_.size(); }
+  /// Edges between the lights of block `b` and their emitter.
+  int edges(std::size_t b) const {
+    return static_cast<int>(std::upper_bound(ends_.begin(), ends_.end(), b) - ends_.begin());
+  }
   /// Number of lights of block `b`: 64, or fewer in the last block of a kind and group.
   int count(std::size_t b) const { return blocks_[b].count; }
   /// A mask of the lights of block `b`.

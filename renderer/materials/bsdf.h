@@ -138,6 +138,10 @@ class Bsdf {
   /// is no such lobe.
   std::optional<DeltaLobe> delta(const V3f& wo, bool transmitted) const;
 
+  /// Whether Lambert's lobes, reflected and transmitted, scatter at least half of the light from
+  /// `to_light` to `to_eye` that all lobes but the delta ones scatter, by luminance.
+  bool mostly_diffuse(const V3f& to_eye, const V3f& to_light) const;
+
   /// Whether some lobe is not a delta, so that the vertex can be connected to others.
   bool connectible() const {
     return lobes_->kind == Lobes::Kind::lambert ||

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "renderer/core/vec.h"
+#include "renderer/path/path_letters.h"
 
 namespace lacuna {
 
@@ -15,11 +16,20 @@ struct ChainState {
   /// The picture is the mean of these over all states with equal probability, times its number of
   /// pixels.
   std::vector<Pixel> pixels;
+  /// The same light by path, for the layers of light; empty without these.
+  struct Part {
+    std::uint32_t index;
+    std::uint16_t edges;
+    PathMatches matches;
+    Rgb value;
+  };
+  std::vector<Part> parts;
   /// The sum of their luminances: the chain's target density, up to a factor.
   double scalar = 0;
 
   void clear() {
     pixels.clear();
+    parts.clear();
     scalar = 0;
   }
 };

@@ -29,7 +29,8 @@ FilmPoint film_point(Rng& rng, const Camera& camera) {
 PathEvaluator::PathEvaluator(const IterationContext& context, const PathLengths& lengths)
     : context_(context),
       counts_{1, 1, 1, double(context.camera.width()) * context.camera.height()},
-      setting_{context.scene, context.camera, lengths.max_depth, lengths.roulette_depth, counts_},
+      setting_{context.scene, context.camera, lengths.max_depth,    lengths.roulette_depth,
+               counts_,       false,          EmitterChoice::power, context.light.automaton()},
       eyes_(lengths.max_depth),
       lights_(setting_, guide_) {}
 
@@ -38,11 +39,13 @@ void PathEvaluator::evaluate(std::span<const Point> points, Counters& counters) 
   walk_lights(points, counters);
   walk_eyes(points, counters);
   const auto arrived = [&](const PendingContribution& u) {
-    const Point& point = points[u.point];
-    if (!u.splat) return add(point, u.pixel, u.value, counters);
-    context_.camera.splat(u.at, [&](std::uint32_t pixel, float share) {
-      add(point, pixel, u.value * share, counters);
-    });
+    const auto add_to = [&](std::uint32_t pixel, const Rgb& value) {
+      add(points[u.point], pixel, value, counters);
+      add_part(points[u.point], {pixel, u.edges, u.matches, value});
+    };
+    if (!u.splat) return add_to(u.pixel, u.value);
+    context_.camera.splat(
+        u.at, [&](std::uint32_t pixel, float share) { add_to(pixel, u.value * share); });
   };
   queue_.flush(context_.scene.rays(), counters, arrived, [&] { context_.check_stop(); });
   for (std::size_t i = 0; i < eyes_.states.size(); ++i) {
@@ -69,6 +72,13 @@ void PathEvaluator::add(const Point& point, std::uint32_t pixel, const Rgb& valu
   point.result->scalar += scalar;
 }
 
+void PathEvaluator::add_part(const Point& point, const ChainState::Part& part) const {
+  if (!context_.light) return;
+  const Rgb scaled = part.value * point.wanted.scale;
+  if (!is_finite(scaled) || !(luminance(scaled) > 0)) return;
+  point.result->parts.push_back({part.index, part.edges, part.matches, scaled});
+}
+
 void PathEvaluator::walk_lights(std::span<const Point> points, Counters& counters) {
   rngs_.clear();
   vertices_.clear();
@@ -85,7 +95,8 @@ void PathEvaluator::walk_lights(std::span<const Point> points, Counters& counter
     for (int s = 1; s <= lights_.length(light_of_[i]); ++s) {
       if (!points[i].wanted.wants(s, 1)) continue;
       lights_.connect_to_eye(light_of_[i], s - 1, [&](const Ray& ray, const auto& splat) {
-        queue_.add(ray, {splat.value * splat.weight, i, 0, true, splat.at});
+        queue_.add(ray, {splat.value * splat.weight, i, 0, static_cast<std::uint16_t>(s),
+                         splat.matches, true, splat.at});
       });
     }
   }
@@ -111,7 +122,8 @@ void PathEvaluator::walk_eyes(std::span<const Point> points, Counters& counters)
   Walk walk(context_.scene, guide_,
             {.max_depth = setting_.max_depth,
              .roulette_depth = setting_.roulette_depth,
-             .counts = eye_side(counts_)},
+             .counts = eye_side(counts_),
+             .letters = setting_.letters},
             counters);
   walk.trace_paths(eyes_.states, [&](std::size_t i, int depth) {
     stop_.check(context_);
@@ -127,7 +139,10 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
   if (point.wanted.wants(0, t)) {
     if (const std::optional<EmitterPoint> e = emitter_at(context_.scene, v)) {
       const auto weight = static_cast<float>(hit_weight(v, depth, *e, counts_, guide_));
-      eyes_.radiance[i] += v.throughput * e->emission * weight;
+      const Rgb value = v.throughput * e->emission * weight;
+      eyes_.radiance[i] += value;
+      add_part(point, {eyes_.pixels[i], static_cast<std::uint16_t>(depth),
+                       matches_at_hit(setting_.letters, v), value});
     }
   }
   const std::size_t light = light_of_[point_of_[i]];
@@ -140,7 +155,9 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
     const Connection c = connect(eye, end);
     if (!c) return;
     const auto w = static_cast<float>(weight(eye, end, c, counts_));
-    queue_.add(shadow_ray(eye, end, c), {c.contribution * w, point_of_[i], eyes_.pixels[i]});
+    queue_.add(shadow_ray(eye, end, c), {c.contribution * w, point_of_[i], eyes_.pixels[i],
+                                         static_cast<std::uint16_t>(end.index + t),
+                                         matches_between(setting_.letters, eye, end, c.w)});
   };
   for (int s = 1; s <= lights_.length(light); ++s) {
     if (!point.wanted.wants(s, t)) continue;

@@ -53,6 +53,8 @@ class PathEvaluator {
     Rgb value;
     std::size_t point;
     std::uint32_t pixel;  ///< unused for a splat
+    std::uint16_t edges;
+    PathMatches matches;
     bool splat = false;
     V2f at{0, 0};
   };
@@ -62,6 +64,8 @@ class PathEvaluator {
   /// Evaluates the strategies at vertex `depth` of eye path `i`.
   void gather(const Point& point, std::size_t i, int depth);
   void add(const Point& point, std::uint32_t pixel, const Rgb& value, Counters& counters) const;
+  /// Adds it to ChainState::parts, if they are wanted.
+  void add_part(const Point& point, const ChainState::Part& part) const;
 
   const IterationContext& context_;
   SampleCounts counts_;

@@ -78,6 +78,24 @@ void PathSpaceMutation::evaluate(Chain& c, Workspace& workspace, Counters& count
   PathBuilder builder(workspace.measure, c.pool, workspace.parts, counters);
   c.pending = propose(c, builder);
   if (!c.pending) builder.abandon();
+  const LightSink& light = workspace.context.light;
+  if (c.pending && light) set_parts(c.proposed, c.pool, light.automaton());
+}
+
+void PathSpaceMutation::set_parts(Path& path, const VertexPool& pool,
+                                  const PathAutomaton* automaton) {
+  PathAutomaton::State state = 0;
+  for (int i = 1; automaton != nullptr && i < path.edge_count(); ++i) {
+    const PathNode& node = path.node(i);
+    const PathSymbol letter =
+        letter_at(pool[node.vertex].v, -path.edge(i - 1).w, path.edge(i).w, node.delta);
+    state = automaton->step(state, letter, Transport::radiance);
+  }
+  const PathMatches matches = automaton != nullptr ? automaton->matches(state, 0) : PathMatches{0};
+  for (const ChainState::Pixel& p : path.state.pixels) {
+    path.state.parts.push_back(
+        {p.index, static_cast<std::uint16_t>(path.edge_count()), matches, p.value});
+  }
 }
 
 bool PathSpaceMutation::propose(Chain& c, PathBuilder& builder) const {

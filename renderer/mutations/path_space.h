@@ -70,6 +70,8 @@ class PathSpaceMutation {
   static void drop_proposal(Chain& c);
   /// Returns the vertices of `path` that are not in `kept` to the pool.
   static void give_back(VertexPool& pool, const WholePath& path, const WholePath& kept);
+  /// Sets ChainState::parts of a path with its contribution.
+  static void set_parts(Path& path, const VertexPool& pool, const PathAutomaton* automaton);
   static void set_contribution(Path& path, const Camera& camera, double scale);
 
   PathSpaceSettings settings_;

@@ -7,11 +7,14 @@
 #include "analysis/space_analysis/space_analysis.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/image.h"
+#include "renderer/path/light_layers.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings/sampler.h"
 
 namespace lacuna {
+
+class PathObserver;
 
 /// Thrown from an iteration when IterationContext::stop returned true. Its partial image is
 /// discarded; running the iteration again gives the same result.
@@ -30,6 +33,9 @@ struct IterationContext {
   /// One image for each layer that the integrator fills: of the picture's size, black at first.
   std::span<Image> layers = {};
   Sampler sampler = Sampler::independent;
+  /// The light by length and by expression: every contribution is added to it, too.
+  LightSink light = {};
+  PathObserver* observer = nullptr;  ///< of the paths of one pixel; null: none
 
   void check_stop() const {
     if (stop()) throw IterationStopped{};

@@ -10,6 +10,13 @@ namespace lacuna {
 /// estimation).
 class DirectLight {
  public:
+  /// A point on an emitter, as a vertex sees it.
+  struct Sample {
+    const V3f& w;  ///< unit, to the point
+    float weight;  ///< MIS
+    const EmitterPoint& point;
+  };
+
   /// Without `next_event`, or without emitters, no points on emitters are sampled and hits have
   /// weight 1.
   DirectLight(const Scene& scene, const Guide& guide, bool next_event, EmitterChoice emitters,
@@ -36,8 +43,8 @@ class DirectLight {
   }
 
   /// Connects the connectible vertex `v` to a point that is sampled on an emitter; `preselected` is
-  /// from EmitterSelection. If the contribution is not black, calls `add(ray, value, w)`: `value`
-  /// counts if the shadow ray `ray` is unoccluded, and `w` is the unit direction to the point.
+  /// from EmitterSelection. If the contribution is not black, calls `add(ray, value, sample)`:
+  /// `value`, which includes the weight, counts if the shadow ray `ray` is unoccluded.
   template <class Add>
   [[gnu::flatten]] void sample(const Vertex& v, int depth, NextEvent::Preselected preselected,
                                Rng& rng, Add&& add) const {
@@ -45,8 +52,8 @@ class DirectLight {
     const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     const EmitterEndpoint light{e, guide_};
     if (const Connection c = connect(eye, light)) {
-      const double w = of_two(weight(eye, light, c, counts_));
-      add(shadow_ray(eye, light, c), c.contribution * static_cast<float>(w), c.w);
+      const auto w = static_cast<float>(of_two(weight(eye, light, c, counts_)));
+      add(shadow_ray(eye, light, c), c.contribution * w, Sample{c.w, w, e});
     }
   }
 

@@ -117,6 +117,14 @@ inline void place_on(const EmitterPoint& e, Vertex& v) {
   v.surface.offset = e.kind == EmitterPoint::Kind::area ? e.offset : 0.0F;
 }
 
+/// A point that next event estimation has sampled, as a vertex, with its density.
+inline Vertex next_event_vertex(const EmitterPoint& e) {
+  Vertex v;
+  place_on(e, v);
+  v.p_fwd = e.next_event_pdf();
+  return v;
+}
+
 /// A point of the eye (Camera::eye()).
 struct EyeEndpoint {
   const Camera& camera;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "renderer/path/walk.h"
@@ -31,11 +32,16 @@ struct EyeBatch {
     radiance[i] = Rgb(0, 0, 0);
   }
 
+  /// Whether branches keep all vertices of the path that was split, for a PathObserver.
+  void keep_whole_paths(bool keep) { whole_ = keep; }
   /// Stores the branches of the batch's paths for resume().
   void store(std::vector<PathBranch>& branches) {
     for (PathBranch& b : branches) {
       const std::size_t i = b.walk;
-      pending_.push_back({std::move(b), pixels[i], origin[i]});
+      const auto before = whole_ ? static_cast<std::size_t>(b.state.depth) : 0;
+      const auto first = vertices.begin() + static_cast<std::ptrdiff_t>(i * stride);
+      std::vector<Vertex> path(first, first + static_cast<std::ptrdiff_t>(before));
+      pending_.push_back({std::move(b), pixels[i], origin[i], std::move(path)});
     }
     branches.clear();
   }
@@ -50,6 +56,7 @@ struct EyeBatch {
       const std::size_t i = states.size();
       PathState w = p.branch.state;
       w.path = std::span(vertices).subspan(i * stride, stride);
+      std::ranges::copy(p.before, w.path.begin());
       w.path[static_cast<std::size_t>(w.depth)] = std::move(p.branch.vertex);
       states.push_back(w);
       pixels[i] = p.pixel;
@@ -62,6 +69,13 @@ struct EyeBatch {
 
   const Vertex& vertex(std::size_t i, int depth) const {
     return vertices[i * stride + static_cast<std::size_t>(depth)];
+  }
+
+  /// The vertices 0 to `last` of path `i`, for a PathObserver.
+  std::vector<const Vertex*> path_to(std::size_t i, int last) const {
+    std::vector<const Vertex*> path;
+    for (int depth = 0; depth <= last; ++depth) path.push_back(&vertex(i, depth));
+    return path;
   }
 
   Vertex& vertex(std::size_t i, int depth) {
@@ -80,7 +94,9 @@ struct EyeBatch {
     PathBranch branch;
     std::uint32_t pixel;
     std::uint8_t origin;
+    std::vector<Vertex> before;  // vertices, if they are kept
   };
+  bool whole_ = false;
   std::vector<Pending> pending_;
 };
 

@@ -5,6 +5,8 @@
 #include "renderer/path/connect.h"
 #include "renderer/path/merge.h"
 #include "renderer/path/next_event.h"
+#include "renderer/path/path_matches.h"
+#include "renderer/path/path_observer.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/path/splats.h"
 #include "renderer/path/walk.h"
@@ -23,6 +25,9 @@ struct LightPathSetting {
   bool spread = false;
   /// How next event estimation (s = 1) selects emitters. Used if counts.nee > 0.
   EmitterChoice next_event = EmitterChoice::power;
+  const PathAutomaton* letters = nullptr;  ///< WalkLimits::letters
+  PathObserver* observer = nullptr;        ///< IterationContext::observer, of splats
+  std::uint64_t iteration = 0;             ///< for the observer
 };
 
 /// At most `size` light paths that are traced together; path i has index i throughout. Guided paths
@@ -64,7 +69,8 @@ class LightBatch {
                             .last_scatters = true,
                             .roulette_depth = setting_.roulette_depth,
                             .transport = Transport::importance,
-                            .counts = light_side(setting_.counts)};
+                            .counts = light_side(setting_.counts),
+                            .letters = setting_.letters};
     Walk walk(setting_.scene, guide_, limits, counters);
     walk.trace_paths(states_, [&](std::size_t i, int depth) {
       const std::size_t path = path_of_[i];
@@ -99,6 +105,7 @@ class LightBatch {
       v.p_fwd = Pdf<Area>(p.p_fwd);
       v.prev_connectible = p.prev_connectible;
       v.mis_partial = p.mis_partial;
+      v.letters = p.letters;
       setting_.scene.make_bsdf(v.surface, v.bsdf);
       guide_.on_hit(v);
     }
@@ -148,14 +155,20 @@ class LightBatch {
   /// Connects all vertices of the first `paths` paths to the eye (t = 1) and appends the unoccluded
   /// contributions to `splats`.
   void splat(std::size_t paths, Counters& counters, Splats& splats) {
-    const auto add = [&](const Ray& ray, const UnshadowedSplat& splat) { queue_.add(ray, splat); };
+    const auto add = [&](std::size_t j, int index) {
+      connect_to_eye(j, index, [&](const Ray& ray, UnshadowedSplat splat) {
+        if (setting_.observer != nullptr) splat.traced = observe(j, index, ray, splat);
+        queue_.add(ray, splat);
+      });
+    };
     for (std::size_t i = 0; i < paths; ++i) {
-      if (length_[i] > 0) connect_to_eye(i, 0, add);
-      for_each_vertex(i, [&](std::size_t j, int index) { connect_to_eye(j, index, add); });
+      if (length_[i] > 0) add(i, 0);
+      for_each_vertex(i, add);
     }
     queue_.flush(setting_.scene.rays(), counters, [&](const UnshadowedSplat& p) {
+      if (p.traced != 0) setting_.observer->arrived(p.traced);
       setting_.camera.splat(p.at, [&](std::uint32_t pixel, float share) {
-        splats.push_back({p.value * share, p.weight, pixel, p.s});
+        splats.push_back({p.value * share, p.weight, pixel, p.s, p.matches});
       });
     });
   }
@@ -166,7 +179,15 @@ class LightBatch {
     float weight;  ///< MIS
     V2f at;        ///< position on the film, in pixels
     std::uint16_t s;
+    PathMatches matches;
+    std::uint32_t traced = 0;  ///< number of the path in the observer; 0: none
   };
+  /// The vertices 0 to `last` of path `i`, for a PathObserver.
+  std::vector<const Vertex*> path_to(std::size_t i, int last) const {
+    std::vector<const Vertex*> path;
+    for (int index = 0; index <= last; ++index) path.push_back(&vertex(i, index));
+    return path;
+  }
   /// Connects vertex `index` in [0, length(i)) of path `i` to the eye (t = 1) and calls `use(ray,
   /// splat)` if the unoccluded contribution is not black.
   template <class Use>
@@ -180,6 +201,25 @@ class LightBatch {
   }
 
  private:
+  /// Shows the observer a splat before its shadow ray `ray` is traced; 0 if it is of other pixels.
+  [[gnu::cold]] std::uint32_t observe(std::size_t i, int last, const Ray& ray,
+                                      const UnshadowedSplat& splat) const {
+    float share = 0;
+    setting_.camera.splat(splat.at, [&](std::uint32_t pixel, float of_pixel) {
+      if (setting_.observer->watches(pixel)) share += of_pixel;
+    });
+    if (share == 0) return 0;
+    Vertex eye;
+    eye.surface.x = ray.o;
+    const std::array<const Vertex*, 1> from_eye{&eye};
+    return setting_.observer->add({.iteration = setting_.iteration,
+                                   .s = last + 1,
+                                   .t = 1,
+                                   .value = splat.value * (splat.weight * share),
+                                   .weight = splat.weight},
+                                  from_eye, path_to(i, last));
+  }
+
   struct Branch {
     std::size_t parent, origin;    ///< the path that was split; the path that walk() started
     int first, length;             ///< as first() and length()
@@ -257,7 +297,15 @@ class LightBatch {
     const EmitterSet& lights = setting_.scene.emitters();
     length_[i] = lights.empty() ? 0 : 1;
     if (!lights.empty()) emitters_[i] = lights.sample(lights.choose(at));
+    if (!lights.empty() && setting_.observer != nullptr) place(i);
     return !lights.empty();
+  }
+
+  /// Makes vertex 0 of path `i` its emitter, with its density.
+  void place(std::size_t i) {
+    Vertex& v = vertex_to_set(i, 0);
+    place_on(emitters_[i], v);
+    v.p_fwd = emitters_[i].pdf;
   }
 
   /// Samples the first edge of path `i` and adds its state to states_.
@@ -289,7 +337,8 @@ class LightBatch {
     use(shadow_ray(eye, light, c),
         UnshadowedSplat{c.contribution / static_cast<float>(setting_.counts.splat),
                         static_cast<float>(weight(eye, light, c, setting_.counts)), *at,
-                        static_cast<std::uint16_t>(light.index + 1)});
+                        static_cast<std::uint16_t>(light.index + 1),
+                        matches_between(setting_.letters, eye, light, c.w)});
   }
 
   const LightPathSetting& setting_;

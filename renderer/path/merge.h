@@ -14,9 +14,10 @@ struct Photon {
   Rgb throughput{0, 0, 0};
   float p_fwd = 0;          ///< Vertex::p_fwd
   std::uint16_t index = 0;  ///< of the vertex on its path, >= 1
-  bool prev_connectible = true;
-  bool caustic = false;    ///< PhotonMap::keep()
-  double mis_partial = 0;  ///< Vertex::mis_partial
+  bool prev_connectible : 1 = true;
+  bool caustic : 1 = false;  ///< PhotonMap::keep()
+  std::uint8_t letters = 0;  ///< Vertex::letters
+  double mis_partial = 0;    ///< Vertex::mis_partial
 };
 static_assert(sizeof(Photon) == 64);  // a cache line
 
@@ -29,6 +30,7 @@ inline Photon photon(const Vertex& v, int index) {
           .p_fwd = v.p_fwd.value,
           .index = static_cast<std::uint16_t>(index),
           .prev_connectible = v.prev_connectible,
+          .letters = v.letters,
           .mis_partial = v.mis_partial};
 }
 

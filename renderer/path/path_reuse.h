@@ -29,8 +29,12 @@ class PathReuse {
  public:
   /// `pixels`: of a group, at most EyeBatch::size; 1: no reuse. `batch` and `guide` must outlive
   /// this.
-  PathReuse(EyeBatch& batch, const Guide& guide, int pixels)
-      : batch_(batch), guide_(guide), pixels_(static_cast<std::size_t>(pixels)) {}
+  /// `by_length`: keeps the light of each path length apart, for finish().
+  PathReuse(EyeBatch& batch, const Guide& guide, int pixels, bool by_length = false)
+      : batch_(batch),
+        guide_(guide),
+        pixels_(static_cast<std::size_t>(pixels)),
+        far_of_length_(by_length && pixels > 1 ? batch.stride * EyeBatch::size : 0) {}
 
   /// Whether pixels share light at all. If not, no path shares().
   bool active() const { return pixels_ > 1; }
@@ -63,10 +67,12 @@ class PathReuse {
   Rgb own(std::size_t i) const { return shares(i) ? carried_[batch_.origin[i]] : Rgb(1, 1, 1); }
   /// Sets the unit direction `w` of next event estimation at vertex 2 of path `i`.
   void set_next_event_direction(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
-  /// Adds a contribution of path `i`: of next event estimation at vertex 2, or of a later vertex.
-  void add(std::size_t i, int depth, const Rgb& value) {
+  /// Adds a contribution of path `i`, of `edges` edges: of next event estimation at vertex 2, or of
+  /// a later vertex.
+  void add(std::size_t i, int depth, int edges, const Rgb& value) {
     if (is_finite(value)) {
       (depth == 2 ? near_ : far_)[batch_.origin[i]] += value;
+      if (depth > 2 && !far_of_length_.empty()) far_of_length(batch_.origin[i], edges) += value;
     } else {
       ++rejected_;
     }
@@ -81,10 +87,11 @@ class PathReuse {
     }
   }
 
-  /// Calls `add(pixel, value)` with the shared light. Requires that the paths and their branches
-  /// have ended and all their shadow rays are traced.
-  template <class Add>
-  void finish(const RayCaster& caster, Counters& counters, Add&& add) {
+  /// Calls `add(pixel, value)` with the shared light and, by length, `add_part(pixel, edges,
+  /// value)` with its parts. Requires that the paths and their branches have ended and all their
+  /// shadow rays are traced.
+  template <class Add, class AddPart>
+  void finish(const RayCaster& caster, Counters& counters, Add&& add, AddPart&& add_part) {
     if (!active()) return;
     counters.rejected += std::exchange(rejected_, 0);
     for (std::size_t first = 0; first < paths_; first += pixels_) {
@@ -93,11 +100,16 @@ class PathReuse {
         if (!shares_[j]) continue;
         const Vertex& v = batch_.vertex(j, 2);
         // A delta lobe of vertex 2 scatters to no other pixel.
-        if (v.delta) add(pixel_of_[j], carried_[j] * std::exchange(far_[j], Rgb(0, 0, 0)));
+        if (v.delta) {
+          add(pixel_of_[j], carried_[j] * std::exchange(far_[j], Rgb(0, 0, 0)));
+          for_each_length(j, [&](int edges, Rgb& far) {
+            add_part(pixel_of_[j], edges, carried_[j] * std::exchange(far, Rgb(0, 0, 0)));
+          });
+        }
         if (is_black(near_[j]) && is_black(far_[j])) continue;
         connect_to_group(j, group);
         trace(caster, counters);
-        distribute(j, add);
+        distribute(j, add, add_part);
       }
     }
   }
@@ -129,6 +141,18 @@ class PathReuse {
     state.roulette.carried_before = max_component(carried_[i]);
     shares_[i] = true;
     near_[i] = far_[i] = Rgb(0, 0, 0);
+    for_each_length(i, [](int, Rgb& far) { far = Rgb(0, 0, 0); });
+  }
+  Rgb& far_of_length(std::size_t i, int edges) {
+    return far_of_length_[i * batch_.stride + static_cast<std::size_t>(edges)];
+  }
+  /// Calls `use(edges, far)` for the parts of far_[i] by length, if they are kept.
+  template <class Use>
+  void for_each_length(std::size_t i, Use&& use) {
+    if (far_of_length_.empty()) return;
+    for (int edges = 3; edges < static_cast<int>(batch_.stride); ++edges) {
+      use(edges, far_of_length(i, edges));
+    }
   }
   static bool is_connectible_surface(const Vertex& v) {
     return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
@@ -190,8 +214,8 @@ class PathReuse {
     for (std::size_t k = 0; k < rays_.size(); ++k) edges_[k + 1].visible = occluded_[k] == 0;
   }
 
-  template <class Add>
-  void distribute(std::size_t j, Add&& add) const {
+  template <class Add, class AddPart>
+  void distribute(std::size_t j, Add&& add, AddPart&& add_part) {
     double sum_near = 0, sum_far = 0;
     for (const Edge& e : edges_) {
       if (!e.visible) continue;
@@ -204,6 +228,17 @@ class PathReuse {
     for (const Edge& e : edges_) {
       if (e.visible) add(e.pixel, e.carried * (e.scattered.near * near + e.scattered.far * far));
     }
+    if (far_of_length_.empty()) return;
+    for (const Edge& e : edges_) {
+      if (e.visible) add_part(e.pixel, 3, e.carried * (e.scattered.near * near));
+    }
+    for_each_length(j, [&](int edges, const Rgb& gathered) {
+      if (is_black(gathered)) return;
+      const Rgb part = over(gathered, own.far, sum_far);
+      for (const Edge& e : edges_) {
+        if (e.visible) add_part(e.pixel, edges, e.carried * (e.scattered.far * part));
+      }
+    });
   }
   /// gathered / scattered, times luminance(scattered) / sum. `sum`: of P_kj F_kj, visible edges.
   static Rgb over(const Rgb& gathered, const Rgb& scattered, double sum) {
@@ -226,6 +261,7 @@ class PathReuse {
   std::array<bool, EyeBatch::size> shares_{};
   std::array<Rgb, EyeBatch::size> carried_{};  // throughput up to vertex 2
   std::array<Rgb, EyeBatch::size> near_{}, far_{};
+  std::vector<Rgb> far_of_length_;  // far_ by the edges of whole paths; empty: not wanted
   std::array<V3f, EyeBatch::size> to_emitter_{}, to_next_{};  // unit, from vertex 2
   std::vector<Edge> edges_;                                   // of one vertex 2
   std::vector<Ray> rays_;                                     // of edges_ but the first

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "renderer/core/vec.h"
+#include "renderer/path/path_letters.h"
 
 namespace lacuna {
 
@@ -13,10 +14,16 @@ namespace lacuna {
 /// added to each pixel in the order of the parts that made them, so that sums have the same bits
 /// for any number of threads.
 struct Splat {
+  static constexpr std::uint16_t any_length = 0;
+
   Rgb value;     ///< unweighted
   float weight;  ///< MIS
   std::uint32_t pixel;
-  std::uint16_t s;  ///< vertices sampled from the light
+  /// Vertices sampled from the light: the edges of the whole path. `any_length`: it stands for
+  /// paths of several lengths, and is not added to the layers of light.
+  std::uint16_t s;
+  PathMatches matches = 0;
+  bool of_layers_only = false;  ///< adds to the layers of light, not to the picture
 };
 
 using Splats = std::vector<Splat>;

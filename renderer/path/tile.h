@@ -12,6 +12,9 @@ struct Tile {
   V2i size{0, 0};
 
   int pixels() const { return size.x * size.y; }
+  bool contains(const V2i& p) const {
+    return p.x >= first.x && p.y >= first.y && p.x < first.x + size.x && p.y < first.y + size.y;
+  }
   V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
 
   /// Pixels along a side of the blocks whose paths are traced together. Blocks begin at multiples

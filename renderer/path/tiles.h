@@ -118,6 +118,10 @@ Counters for_each_splatting_part(const IterationContext& context, int n, Image& 
     sum += for_each_part(context, int{BandedSplats::bands}, [&](int band, Counters& counters) {
       for (const BandedSplats& part : std::span(parts).first(std::size_t(some))) {
         part.for_each_in(std::size_t(band), [&](const Splat& s) {
+          if (s.s != Splat::any_length) {
+            context.light.add(s.pixel, s.s, s.matches, s.value * s.weight);
+          }
+          if (s.of_layers_only) return;
           accumulate(image.pixels[s.pixel], s.value * s.weight, counters);
           arrived(s);
         });

@@ -26,10 +26,11 @@ struct Vertex {
   bool delta = false;  ///< the walk left it through a delta lobe
   /// The previous vertex is connectible(): one of the two conditions of c_j in mis.h.
   bool prev_connectible = true;
-  Surface surface;          ///< emitter: x, ng; background: only x, the unit direction to infinity
-  V3f wp{0, 0, 0};          ///< unit, to the previous vertex
-  Rgb throughput{1, 1, 1};  ///< product of f |cos| / pdf over the edges up to here
-  Pdf<Area> p_fwd{};        ///< density of this vertex on this walk; background: per steradian
+  std::uint8_t letters = 0;  ///< PathAutomaton::State after the vertices before, if one is used
+  Surface surface;           ///< emitter: x, ng; background: only x, the unit direction to infinity
+  V3f wp{0, 0, 0};           ///< unit, to the previous vertex
+  Rgb throughput{1, 1, 1};   ///< product of f |cos| / pdf over the edges up to here
+  Pdf<Area> p_fwd{};         ///< density of this vertex on this walk; background: per steradian
   /// The sum over i < j of mis_partial_sum(), without the factor pdf_rev: that depends on the next
   /// edge.
   double mis_partial = 0;

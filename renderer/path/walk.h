@@ -9,6 +9,7 @@
 #include "renderer/core/rng.h"
 #include "renderer/path/counters.h"
 #include "renderer/path/mis.h"
+#include "renderer/path/path_letters.h"
 #include "renderer/path/roulette.h"
 #include "renderer/scene/scene.h"
 
@@ -25,6 +26,8 @@ struct WalkLimits {
   bool packets = false;
   /// Sample counts of this side's strategies; all 0: Vertex::mis_partial is not computed.
   TechniqueCounts counts = {};
+  /// Sets Vertex::letters; null: they stay as they are.
+  const PathAutomaton* letters = nullptr;
 };
 
 /// One part of a path that was split at its last vertex. It continues from there on its own.
@@ -168,6 +171,19 @@ class Walk {
       v.mis_partial = 0;
     }
     v.prev_connectible = before.connectible();
+    if (limits_.letters != nullptr) [[unlikely]]
+      read_letter(before, w.ray.d, v);
+  }
+
+  /// Reads the letter of vertex `before`, which the walk left along `wi` to `v`.
+  [[gnu::noinline, gnu::cold]] void read_letter(const Vertex& before, const V3f& wi,
+                                                Vertex& v) const {
+    v.letters = 0;
+    if (before.kind != Vertex::Kind::surface) return;
+    const bool from_eye = limits_.transport == Transport::radiance;
+    const PathSymbol letter =
+        letter_at(before, from_eye ? before.wp : wi, from_eye ? wi : before.wp, before.delta);
+    v.letters = limits_.letters->step(before.letters, letter, limits_.transport);
   }
 
   /// Absorption along the edge from `before` to `v`. Not inline: on_hit() is, and few scenes

@@ -94,6 +94,8 @@ struct InspectSettings {
   int learn = 0;
   std::array<double, 2> from{0.5, 0.5};
 
+  static std::string_view without_lengths() { return "shows no light"; }
+  static std::string_view without_letters() { return without_lengths(); }
   bool operator==(const InspectSettings&) const = default;
 };
 

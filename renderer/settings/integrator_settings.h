@@ -94,10 +94,44 @@ std::string_view conflict(const std::variant<Ts...>& settings) {
       settings);
 }
 
+/// The longest paths, in edges; 0 if there are none.
+template <class... Ts>
+int most_edges(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S& s) {
+        if constexpr (requires { s.max_depth; }) return s.max_depth;
+        return 0;
+      },
+      settings);
+}
+
+/// Why the integrator cannot tell the lengths of its paths apart, or their letters, as the
+/// continuation of "found ... in a job of integrator ..., which "; empty if it can. An alternative
+/// may define such functions.
+template <class... Ts>
+std::string_view without_lengths(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S& s) -> std::string_view {
+        if constexpr (requires { s.without_lengths(); }) return s.without_lengths();
+        return {};
+      },
+      settings);
+}
+template <class... Ts>
+std::string_view without_letters(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S& s) -> std::string_view {
+        if constexpr (requires { s.without_letters(); }) return s.without_letters();
+        return {};
+      },
+      settings);
+}
+
 /// All layers that a job with this integrator may request.
 template <class... Ts>
 std::vector<ImageLayer> offered_layers(const std::variant<Ts...>& settings) {
   std::vector<ImageLayer> all(common_layers.begin(), common_layers.end());
+  if (without_lengths(settings).empty()) all.push_back(ImageLayer::lengths);
   const auto own = filled_layers(settings);
   all.insert(all.end(), own.begin(), own.end());
   return all;

@@ -69,6 +69,20 @@ struct ManyLightsSettings : PathLengths {
     return visibility_is || !compensation || (random != nullptr && random->biased());
   }
 
+  std::string_view without_lengths() const {
+    const auto* random = std::get_if<RandomLightsSettings>(&gather);
+    if (random != nullptr && random->filter_radius > 0) {
+      return "averages the virtual lights of all lengths together (\"filter_radius\")";
+    }
+    const auto* probabilistic = std::get_if<ProbabilisticVisibilitySettings>(&visibility);
+    if (probabilistic != nullptr && probabilistic->clamp_negative) {
+      return "sets a negative sum of all lengths to 0 (\"clamp_negative\")";
+    }
+    return {};
+  }
+  static std::string_view without_letters() {
+    return "sums 64 virtual lights at a time, without the letters of their surfaces";
+  }
   bool operator==(const ManyLightsSettings&) const = default;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "base/settings/field.h"
 
@@ -13,6 +14,7 @@ enum class ImageLayer {
   albedo,
   normal,
   depth,
+  lengths,
   strategies,
   strategies_unweighted,
   distributions,
@@ -22,7 +24,7 @@ enum class ImageLayer {
 
 template <>
 struct EnumTable<ImageLayer> {
-  static constexpr std::array<EnumValue<ImageLayer>, 10> values{{
+  static constexpr std::array<EnumValue<ImageLayer>, 11> values{{
       {ImageLayer::variance, "variance",
        "variance of the pixel's mean: from all iterations if they are independent, from the two "
        "halves with sampler `sobol`"},
@@ -31,6 +33,10 @@ struct EnumTable<ImageLayer> {
       {ImageLayer::albedo, "albedo", "base reflectance of the first hit"},
       {ImageLayer::normal, "normal", "shading normal of the first hit, world space"},
       {ImageLayer::depth, "depth", "distance to the first hit, scene units"},
+      {ImageLayer::lengths, "lengths",
+       "the light of each number of edges, one image for each up to max_depth: 1 = directly "
+       "visible "
+       "emitters, 2 = direct light; they sum to the picture"},
       {ImageLayer::strategies, "strategies",
        "weighted contribution of each strategy (s, t) of a bidirectional method: one image for "
        "each"},
@@ -50,6 +56,33 @@ struct EnumTable<ImageLayer> {
 inline constexpr std::array common_layers{ImageLayer::variance, ImageLayer::halves,
                                           ImageLayer::albedo, ImageLayer::normal,
                                           ImageLayer::depth};
+
+/// A layer of the light whose paths match an expression (path_expression.h).
+struct LightPathsLayer {
+  std::string light;
+  std::string name;
+  bool operator==(const LightPathsLayer&) const = default;
+};
+template <class V>
+void describe(V& v, LightPathsLayer& s) {
+  v("light", s.light,
+    {.doc =
+         "the paths, as a regular expression over E (eye), L (emitter) and what happens at each "
+         "vertex between them: D (diffuse), G (glossy), S (mirror or clear glass). `ELS` is no "
+         "path; `E[DG]L` is direct light, `LS+DE` are caustics, `!EDL` is all but diffuse direct "
+         "light",
+     .min = 1,
+     .max = 256,
+     .required = true});
+  v("name", s.name,
+    {.doc = "name of the layer in image.exr, after `light.`: letters, digits, `_` and `-`",
+     .min = 1,
+     .max = 64,
+     .required = true});
+}
+
+/// The most such layers of a job.
+inline constexpr std::size_t most_light_paths_layers = 8;
 
 /// The reconstruction filter of a pixel.
 enum class PixelFilter { box, tent };

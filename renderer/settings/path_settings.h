@@ -36,6 +36,12 @@ struct PathSettings : PathLengths {
     return {};
   }
 
+  std::string_view without_letters() const {
+    return reuse > 1
+               ? "connects the ends of paths to those of other pixels (\"reuse\"), with other "
+                 "letters"
+               : "";
+  }
   bool biased() const { return lacuna::biased(guide); }
   bool operator==(const PathSettings&) const = default;
 };

@@ -33,7 +33,8 @@ Row film(int width, int height) {
             job.resolution = {width, height};
             job.budget.iterations = 2;
             if (width == 1) {  // wide ones take long, and no layer knows its shape
-              job.layers = offered_layers(method.settings);
+              const auto offered = offered_layers(method.settings);
+              job.layers.assign(offered.begin(), offered.end());
             }
             const auto pixels = done_image(stage.run(job, to_the_end), check);
             check.require(pixels.size() == 3 * std::size_t(width) * std::size_t(height),

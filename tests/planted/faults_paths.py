@@ -259,6 +259,15 @@ FAULTS = [
     # The film.
     Fault("the second doubles of merged sums are lost", "renderer/film/exact_sums.h",
           "return of_high + std::abs(add_to(sum, other.low));", "return of_high;"),
+    # Light by path.
+    Fault("light paths forget their letters", "renderer/path/path_letters.h",
+          "return transport == Transport::radiance ? forward(s, symbol) : backward(s, symbol);",
+          "return transport == Transport::radiance ? forward(s, symbol) : State{0};"),
+    Fault("mirrors have the letter of the surface's other lobes", "renderer/path/walk.h",
+          "from_eye ? wi : before.wp, before.delta);", "from_eye ? wi : before.wp, false);"),
+    Fault("photons forget their letters", "renderer/path/merge.h", ".letters = v.letters,", ".letters = 0,"),
+    Fault("shared light has one edge too few", "renderer/integrators/path_tracer.cpp",
+          "reuse_.add(c.path, c.depth, c.depth + s, c.value);", "reuse_.add(c.path, c.depth, c.depth, c.value);"),
     # Loading.
     Fault("far scenes stay far", "renderer/gltf/gltf_origin.cpp",
           "constexpr double far = 32;", "constexpr double far = 1e300;"),

@@ -120,7 +120,7 @@ TEST_F(Layers, AreMeansInImageExrAndForThePageByTheirNames) {
   Noise noise;
   ASSERT_TRUE(run(folder, noise));
   EXPECT_EQ(noise.asked, 1);
-  EXPECT_EQ(noise.asked_for, spec.layers);
+  EXPECT_EQ(noise.asked_for, named_layers(spec.layers));
   for (std::size_t k = 0; k < all_names.size(); ++k) {
     std::vector<double> expected(3 * 8, 0.0);
     for (std::uint64_t i = 0; i < 40; ++i) {

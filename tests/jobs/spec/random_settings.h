@@ -46,6 +46,13 @@ class RandomSettings {
       } else {
         describe(*this, out.object.emplace());
       }
+    } else if constexpr (is_word_or<T>) {
+      out = {};
+      if (below(2) == 0) {
+        fill(out.word, field);
+      } else {
+        describe(*this, out.object.emplace());
+      }
     } else if constexpr (is_optional<T>) {
       out.reset();
       if (below(2) == 0) fill(out.emplace(), field);
@@ -142,13 +149,19 @@ inline JobSpec random_job(std::uint64_t seed) {
     }
   }
   reconcile(spec.integrator);
-  auto& layers = spec.layers;
-  std::sort(layers.begin(), layers.end());
-  layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
   const std::vector<ImageLayer> offered = offered_layers(spec.integrator);
-  std::erase_if(layers, [&](ImageLayer layer) {
-    return std::find(offered.begin(), offered.end(), layer) == offered.end();
-  });
+  std::vector<LayerRequest> layers;
+  for (LayerRequest layer : spec.layers) {
+    if (layer.object) {
+      if (!without_letters(spec.integrator).empty()) continue;
+      layer.object = {layers.size() % 2 == 0 ? "E.*L" : "!LS+DE", std::to_string(layers.size())};
+    } else if (std::ranges::find(offered, layer.word) == offered.end() ||
+               std::ranges::find(layers, layer) != layers.end()) {
+      continue;
+    }
+    layers.push_back(std::move(layer));
+  }
+  spec.layers = std::move(layers);
   Budget& b = spec.budget;
   if (!b.seconds && !b.cpu_seconds && !b.iterations && !b.error) b.iterations = 1;
   if (spec.reference.empty()) spec.reference = "auto";

@@ -55,6 +55,8 @@ struct RenderSettings {
   PixelFilter filter = PixelFilter::box;
   int resolution = 24;  ///< of the analysis, voxels
   std::vector<ImageLayer> layers = {};
+  std::vector<LightPathsLayer> light = {};
+  PathObserver* observer = nullptr;
 };
 
 inline std::filesystem::path own_scene(const std::string& name) {
@@ -76,6 +78,10 @@ class Session {
         scene_(std::move(data), integrator_->needs(), s.environment, pool_) {
     integrator_->prepare({scene_, pool_, space_, camera_});
     names_ = integrator_->layers(s.layers);
+    own_layers_ = names_.size();
+    light_ = {std::ranges::find(s.layers, ImageLayer::lengths) != s.layers.end(), s.light,
+              most_edges(s.integrator)};
+    names_.insert(names_.end(), light_.names().begin(), light_.names().end());
   }
 
   /// `stop`: as IterationContext's.
@@ -89,8 +95,10 @@ class Session {
                                        .seed = settings_.seed,
                                        .iteration = i,
                                        .stop = stop,
-                                       .layers = layers_,
-                                       .sampler = settings_.sampler},
+                                       .layers = std::span(layers_).first(own_layers_),
+                                       .sampler = settings_.sampler,
+                                       .light = {light_, std::span(layers_).subspan(own_layers_)},
+                                       .observer = settings_.observer},
                                       image);
     return image;
   }
@@ -104,6 +112,8 @@ class Session {
 
  private:
   RenderSettings settings_;
+  std::size_t own_layers_ = 0;
+  LightLayers light_;
   ThreadPool pool_;
   std::unique_ptr<Integrator> integrator_;
   CameraData eye_;

@@ -31,12 +31,14 @@ class SharedLight : public testing::Test {
   /// Path `i` gathers `value` by next event estimation at its second vertex.
   void gather(std::size_t i, float value) {
     reuse_.set_next_event_direction(i, batch_.vertex(i, 2).wp);
-    reuse_.add(i, 2, Rgb(value));
+    reuse_.add(i, 2, 3, Rgb(value));
   }
   Rgb finish() {
     Rgb sum(0, 0, 0);
-    reuse_.finish(scene_.rays(), counters_,
-                  [&](std::uint32_t, const Rgb& value) { accumulate(sum, value, counters_); });
+    reuse_.finish(
+        scene_.rays(), counters_,
+        [&](std::uint32_t, const Rgb& value) { accumulate(sum, value, counters_); },
+        [](std::uint32_t, int, const Rgb&) {});
     return sum;
   }
 
