@@ -157,16 +157,16 @@ class PathTracer::TilePass {
       reuse_.add(c.path, c.depth, c.depth + s, c.value);
     } else {
       add(c.pixel, c.value);
-      context_.light.add(c.pixel, c.depth + s, c.matches, c.value);
+      if (marks_) [[unlikely]]
+        arrive(c, s);
     }
-    if (c.traced != 0) context_.observer->arrived(c.traced);
     if (gathers_) gathered_.add(c.path, c.depth, shared ? c.value * reuse_.own(c.path) : c.value);
   }
 
   bool is_observed(std::size_t pixel) const {
     return context_.observer != nullptr && context_.observer->watches(pixel);
   }
-  // Not inline: few jobs have layers of expressions or an observer, and all contributions pass
+  // Not inline: few jobs have layers of light or an observer, and all contributions pass
   // here.
   [[gnu::noinline, gnu::cold]] void mark_hit(Contribution& c) const {
     const Vertex& v = batch_.vertex(c.path, c.depth);
@@ -183,6 +183,10 @@ class PathTracer::TilePass {
     if (!is_observed(c.pixel)) return;
     const Vertex light = next_event_vertex(to.point);
     c.traced = observe(c, 1, to.weight, std::array{&light});
+  }
+  [[gnu::noinline, gnu::cold]] void arrive(const Contribution& c, int s) const {
+    context_.light.add(c.pixel, c.depth + s, c.matches, c.value);
+    if (c.traced != 0) context_.observer->arrived(c.traced);
   }
   std::uint32_t observe(const Contribution& c, int s, float weight,
                         std::span<const Vertex* const> from_light) const {
@@ -212,7 +216,7 @@ class PathTracer::TilePass {
   ShadowQueue<Contribution> shadows_;  // contributions of next event estimation
   GatheredLight gathered_{batch_};     // for a guide that learns
   bool gathers_ = false;
-  const bool marks_ = context_.light.automaton() != nullptr || context_.observer != nullptr;
+  const bool marks_ = bool(context_.light) || context_.observer != nullptr;
   PathReuse reuse_;
   Walk walk_;
 };
