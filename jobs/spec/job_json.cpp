@@ -135,6 +135,20 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
   }
 }
 
+/// Another program's pictures have no layers and no iterations.
+void check_foreign(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!std::holds_alternative<ForeignSettings>(spec.integrator)) return;
+  if (!spec.layers.empty()) {
+    problems.push_back(
+        {"/layers", "found layers in a job of integrator \"foreign\"; allowed: none"});
+  }
+  if (spec.shards > 1) {
+    problems.push_back({"/shards", fmt::format("found {} in a job of integrator \"foreign\"; "
+                                               "allowed: 1",
+                                               spec.shards)});
+  }
+}
+
 void check_layers_once(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!is_good(problems, "/layers")) return;
   for (auto it = spec.layers.begin(); it != spec.layers.end(); ++it) {
@@ -237,6 +251,7 @@ JobSpec parse_job(std::string_view json) {
   check_layers_of_integrator(spec, problems);
   check_conflict("/integrator", spec.integrator, problems);
   check_candidates(spec, problems);
+  check_foreign(spec, problems);
   check_layers_once(spec, problems);
   check_light_paths(spec, problems);
   check_crop(spec, problems);

@@ -200,6 +200,9 @@ TEST(ForeignSettings, HavePicturesOrACommand) {
   EXPECT_EQ(refusal(""), one);
   EXPECT_EQ(refusal(R"(, "command": ["a"], "pictures": [{"file": "a.exr", "seconds": 1}])"), one);
   EXPECT_NE(refusal(R"(, "command": [""])"), "");
+  EXPECT_EQ(refusal(R"(, "command": ["a"]}, "layers": ["variance"], "budget": {)").substr(0, 7),
+            "/layers");
+  EXPECT_EQ(refusal(R"(, "command": ["a"]}, "shards": 2, "budget": {)").substr(0, 7), "/shards");
   EXPECT_NE(refusal(R"(, "pictures": [{"file": "a.exr", "seconds": 0}])"), "");
 }
 

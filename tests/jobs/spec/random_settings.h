@@ -59,7 +59,9 @@ class RandomSettings {
     } else if constexpr (is_array<T>) {
       for (auto& element : out) fill(element, field);
     } else if constexpr (is_vector<T>) {
-      out.resize(below(static_cast<std::size_t>(std::min(field.max, 5.0)) + 1));
+      const double least = std::max(field.min, 0.0), most = std::min(field.max, least + 5);
+      out.resize(static_cast<std::size_t>(least) +
+                 below(static_cast<std::size_t>(most - least) + 1));
       for (auto& element : out) fill(element, Field{});
     } else if constexpr (is_variant<T>) {
       alternative(out, below(std::variant_size_v<T>));
@@ -136,6 +138,13 @@ inline JobSpec random_job(std::uint64_t seed) {
     if (!(camera->aperture > 0)) camera->focus = 0, camera->blades = 0;
     if (camera->blades < 3) camera->blades = 0;
     if (camera->type == Projection::panorama) spec.pixel_filter = PixelFilter::box;
+  }
+  if (auto* foreign = std::get_if<ForeignSettings>(&spec.integrator)) {
+    foreign->command.clear();
+    if (foreign->pictures.empty()) foreign->command = {"render", "{out}"};
+    spec.layers.clear();
+    spec.shards = 1;
+    spec.shard = 0;
   }
   if (auto* choosing = std::get_if<AutoSettings>(&spec.integrator)) {
     spec.shards = 1;
