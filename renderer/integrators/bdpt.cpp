@@ -1,4 +1,4 @@
-#include "renderer/integrators/bdpt.h"
+#include "renderer/integrators/merging_bdpt.h"
 
 #include "renderer/connections/registry.h"
 #include "renderer/core/passes.h"
@@ -6,7 +6,6 @@
 #include "renderer/integrators/integrators.h"
 #include "renderer/path/emitter_selection.h"
 #include "renderer/path/light_pass.h"
-#include "renderer/path/photon_map.h"
 #include "renderer/settings/connections_settings.h"
 #include "renderer/settings/vcm_settings.h"
 
@@ -14,29 +13,23 @@ namespace lacuna {
 
 namespace {
 
-/// The techniques that PairedBdpt combines.
-struct Merging {
-  bool merge = false;   ///< merge eye vertices with the vertices of all light paths (mis.h)
-  bool connect = true;  ///< use all strategies (s, t), else s = 0 only
-  RadiusSettings radius = {};
-};
-
 /// connections: paired. The eye path of pixel j is connected to light path j; for s = 1 a new point
 /// on an emitter is sampled at each vertex, or that of the light path is taken (DirectPoint). With
-/// merging: vertex connection and merging (Georgiev
-/// et al. 2012). Then all light paths are traced before the eye paths, for their photons. The
-/// vertices for connections are restored from the photons, which takes less memory than storing
-/// whole vertices.
-class PairedBdpt final : public Bdpt {
-  using Base = Bdpt;
+/// merging all light paths are traced before the eye paths, for their photons. The vertices for
+/// connections are restored from the photons, which takes less memory than storing whole vertices.
+class PairedBdpt final : public MergingBdpt {
+  using Base = MergingBdpt;
   using Base::EyePaths;
   using Base::guide_;
   using Base::layers_;
+  using Base::LookUps;
+  using Base::merging_;
+  using Base::photons_;
   using Base::settings_;
 
  public:
-  PairedBdpt(const BdptSettings& settings, Guide guide, const Merging& merging = {})
-      : Base(settings, std::move(guide)), merging_(merging) {}
+  PairedBdpt(const BdptSettings& settings, Guide guide, const Merging& merging)
+      : Base(settings, std::move(guide), merging) {}
 
   SceneNeeds needs() const override {
     SceneNeeds needs = Base::needs();
@@ -50,10 +43,7 @@ class PairedBdpt final : public Bdpt {
 
   std::vector<std::pair<std::string, double>> statistics() const override {
     auto stats = Base::statistics();
-    if (!merging_.merge) return stats;
-    stats.emplace_back("photons", static_cast<double>(photons_.size()));
-    stats.emplace_back("radius", photons_.radius());
-    seconds_.append_to(stats);
+    if (merging_.merge) seconds_.append_to(stats);
     return stats;
   }
 
@@ -63,11 +53,8 @@ class PairedBdpt final : public Bdpt {
     SampleCounts counts;
     if (lit && merging_.connect) counts = {1, 1, 1, pixels};
     Counters sum = guide_.begin(context, settings_.max_depth);
-    if (lit && merging_.merge) {
-      const double radius = merge_radius(merging_.radius, context);
-      counts.merge = pixels * std::numbers::pi * radius * radius;
-      sum += photon_pass(context, counts, radius, image);
-    }
+    if (lit) counts.merge = Base::begin_merging(context, Base::pixels(image));
+    if (counts.merge > 0) sum += photon_pass(context, counts, image);
     Passes passes(context.pool);
     passes.begin("eye paths", seconds_.eye);
     sum += eye_pass(context, counts, image);
@@ -90,25 +77,17 @@ class PairedBdpt final : public Bdpt {
     return setting;
   }
 
-  /// An eye vertex whose photons are looked up.
-  struct LookUp {
-    std::uint32_t path;
-    int depth;
-  };
   struct Pairs {
     EyePaths eye;
     LightBatch light;
+    LookUps look_ups = {};
     std::vector<Rng> rngs = {};
-    std::vector<LookUp> look_ups = {};
-    double look_up_seconds = 0;
     SparseStop stop = {};
   };
 
-  Counters photon_pass(const IterationContext& context, const SampleCounts& counts, double radius,
-                       Image& image) {
+  Counters photon_pass(const IterationContext& context, const SampleCounts& counts, Image& image) {
     Passes passes(context.pool);
     passes.begin("light paths", seconds_.light);
-    photons_.begin(Base::pixels(image));
     const LightPathSetting setting = light_setting(context, counts);
     const Counters sum = light_pass(
         {context, setting, Base::pixels(image), image}, guide_,
@@ -117,7 +96,7 @@ class PairedBdpt final : public Bdpt {
         },
         Base::splat_layers(context));
     passes.begin("photon grid", seconds_.grid);
-    photons_.arrange(radius, context.pool);
+    Base::arrange_photons(context);
     return sum;
   }
 
@@ -141,12 +120,12 @@ class PairedBdpt final : public Bdpt {
         if (merging_.connect) walk_light(context, pairs, counters, splats);
         do {
           walk_eye(pass, walk, pairs);
-          look_up(pass, pairs);
+          Base::look_up(pass, pairs.eye, pairs.look_ups);
           Base::finish(pass, pairs.eye, samples[static_cast<std::size_t>(i)],
                        [](const BdptContribution&) {});
         } while (Base::resume(walk, pairs.eye));
       }
-      seconds[static_cast<std::size_t>(i)] = pairs.look_up_seconds;
+      seconds[static_cast<std::size_t>(i)] = pairs.look_ups.seconds;
     };
     const Counters sum =
         for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
@@ -198,7 +177,7 @@ class PairedBdpt final : public Bdpt {
     const Vertex& v = pairs.eye.vertex(i, depth);
     const int longest = Base::longest_light_path(v, depth);
     if (longest == 0) return;
-    if (counts.merge > 0) pairs.look_ups.push_back({static_cast<std::uint32_t>(i), depth});
+    if (counts.merge > 0) pairs.look_ups.add(i, depth);
     if (counts.nee == 0) return;
     const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     const std::size_t path = pairs.eye.origin[i];
@@ -214,59 +193,27 @@ class PairedBdpt final : public Bdpt {
     });
   }
 
-  /// Merges the eye vertices of the batch with the photons around them.
-  void look_up(const Base::TilePass& pass, Pairs& pairs) const {
-    if (pairs.look_ups.empty()) return;
-    const SampleCounts& counts = pairs.eye.counts;
-    const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    for (const LookUp& at : pairs.look_ups) {
-      pairs.stop.check(pass.context);
-      const Vertex& v = pairs.eye.vertex(at.path, at.depth);
-      const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
-      const std::uint32_t pixel = pairs.eye.pixels[at.path];
-      const LightSink& light = pass.context.light;
-      Rgb sum(0, 0, 0);
-      // Eye and light have each met a blended surface with probability alpha: once too often.
-      const float covered = pass.context.scene.coverage(v.surface);
-      photons_.for_each_at(
-          v, pairs.eye.states[at.path].rng, [&](const Photon& p, float, float count) {
-            if (p.index + at.depth > settings_.max_depth) return;
-            const Rgb value = merged(eye, p) * static_cast<float>(double(count) / counts.merge);
-            if (is_black(value)) return;
-            const auto w = static_cast<float>(merge_weight(eye, p, counts));
-            sum += value * w;
-            layers_.merge(pass.context.layers, p.index + 1, at.depth + 1,
-                          {pixel, value / covered, w});
-            if (!light) return;
-            const auto matches = matches_beyond(light.automaton(), eye, p.wp, p.letters);
-            light.add(pixel, p.index + at.depth, matches, value * w / covered);
-          });
-      sum /= covered;
-      Base::contribute(pass, pairs.eye, at.path, at.depth, sum);
-    }
-    pairs.look_ups.clear();
-    pairs.look_up_seconds += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
-  }
-
-  Merging merging_;
-  PhotonMap photons_;
   PhotonSeconds seconds_;
 };
 
 /// Connections to vertices of light paths that all pixels share, resampled at each eye vertex. The
 /// shared paths are the first of those whose vertices are connected to the eye (t = 1).
 template <SharedConnections Choice>
-class ResampledBdpt final : public Bdpt {
-  using Base = Bdpt;
+class ResampledBdpt final : public MergingBdpt {
+  using Base = MergingBdpt;
   using Base::EyePaths;
   using Base::guide_;
   using Base::layers_;
+  using Base::LookUps;
+  using Base::merging_;
+  using Base::photons_;
   using Base::settings_;
 
  public:
   template <class Settings>
-  ResampledBdpt(const BdptSettings& settings, Guide guide, const Settings& connections)
-      : Base(settings, std::move(guide)), connections_(connections) {}
+  ResampledBdpt(const BdptSettings& settings, Guide guide, const Merging& merging,
+                const Settings& connections)
+      : Base(settings, std::move(guide), merging), connections_(connections) {}
 
   SceneNeeds needs() const override {
     SceneNeeds needs = Base::needs();
@@ -274,7 +221,7 @@ class ResampledBdpt final : public Bdpt {
     return needs;
   }
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
-    return layers_.choose(wanted, settings_.max_depth, Choice::distributions);
+    return layers_.choose(wanted, settings_.max_depth, Choice::distributions, merging_.merge);
   }
   void prepare(const PrepareContext& context) override {
     Base::prepare(context);
@@ -308,9 +255,11 @@ class ResampledBdpt final : public Bdpt {
                                 static_cast<std::int64_t>(resampled));
     const double count_as = connections_.resampling().count_as;
     const double count = count_as > 0 ? count_as : static_cast<double>(resampled);
-    const SampleCounts counts =
-        lit ? SampleCounts{1, count_as > 0 ? 1.0 : count, count, static_cast<double>(paths)}
-            : SampleCounts{};
+    SampleCounts counts;
+    if (lit) {
+      counts = {1, count_as > 0 ? 1.0 : count, count, static_cast<double>(paths),
+                Base::begin_merging(context, paths)};
+    }
 
     Passes passes(context.pool);
     passes.begin("light paths", seconds_.light);
@@ -321,9 +270,14 @@ class ResampledBdpt final : public Bdpt {
         {context, setting, lit ? paths : 0, image}, guide_,
         [&](std::size_t path, const LightBatch& batch, std::size_t place) {
           if (path < resampled) lights.keep(path, batch, place);
+          if (counts.merge == 0) return;
+          batch.for_each_vertex(place, [&](std::size_t j, int index) {
+            photons_.keep(path, batch.vertex(j, index), index);
+          });
         },
         Base::splat_layers(context));
     lights.arrange();
+    if (counts.merge > 0) Base::arrange_photons(context);
     passes.begin("distributions", seconds_.distributions);
     connections_.begin(context, lights, cell_statistics_, counters);
     passes.begin("eye paths", seconds_.eye);
@@ -356,6 +310,7 @@ class ResampledBdpt final : public Bdpt {
             connect_vertex(part, k, depth);
             Base::flush_if_long(pass, part.batch, record);
           });
+          Base::look_up(pass, part.batch, part.look_ups);
           Base::finish(pass, part.batch, samples[index], record);
         } while (Base::resume(walk, part.batch));
       }
@@ -374,6 +329,7 @@ class ResampledBdpt final : public Bdpt {
     double threshold;  // CellStatistics::survival()
     EyePaths batch;
     CellStatistics::Accumulator accumulator;
+    LookUps look_ups = {};
     SparseStop stop = {};
   };
 
@@ -391,6 +347,7 @@ class ResampledBdpt final : public Bdpt {
     const Vertex& v = part.batch.vertex(k, depth);
     const int longest = Base::longest_light_path(v, depth);
     if (longest == 0 || part.lights.paths() == 0) return;
+    if (part.batch.counts.merge > 0) part.look_ups.add(k, depth);
     Rng& rng = part.batch.states[k].rng;
     const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     const auto lookup = connections_.find(v, depth, rng);
@@ -426,23 +383,32 @@ class ResampledBdpt final : public Bdpt {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
+namespace {
+
+std::unique_ptr<Integrator> make(const BdptSettings& settings, const Merging& merging) {
   return ConnectionsRegistry::visit(
       settings.connections,
       [&]<Connections C>(const auto& connections) -> std::unique_ptr<Integrator> {
         Guide guide = make_guide(settings.guide, settings.light_guide);
         if constexpr (std::is_same_v<C, PairedConnections>) {
-          return std::make_unique<PairedBdpt>(settings, std::move(guide));
+          return std::make_unique<PairedBdpt>(settings, std::move(guide), merging);
         } else {
-          return std::make_unique<ResampledBdpt<C>>(settings, std::move(guide), connections);
+          return std::make_unique<ResampledBdpt<C>>(settings, std::move(guide), merging,
+                                                    connections);
         }
       });
 }
 
+}  // namespace
+
+std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) { return make(settings, {}); }
+
 std::unique_ptr<Integrator> make_vcm(const VcmSettings& settings) {
-  const BdptSettings bdpt{static_cast<const PathLengths&>(settings)};
-  return std::make_unique<PairedBdpt>(bdpt, make_guide(settings.guide, settings.light_guide),
-                                      Merging{settings.merge, settings.connect, settings});
+  BdptSettings bdpt{static_cast<const PathLengths&>(settings)};
+  bdpt.connections = connections_of(settings);
+  bdpt.guide = settings.guide;
+  bdpt.light_guide = settings.light_guide;
+  return make(bdpt, {settings.merge, settings.connect, settings});
 }
 
 }  // namespace lacuna

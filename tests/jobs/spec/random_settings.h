@@ -115,6 +115,9 @@ void reconcile(Settings& settings) {
   if (auto* path = std::get_if<PathSettings>(&settings); path && !path->conflict().empty()) {
     path->reuse = 1;
   }
+  if (auto* vcm = std::get_if<VcmSettings>(&settings); vcm && !vcm->conflict().empty()) {
+    vcm->connect = true;
+  }
 }
 
 /// A job that parse_job accepts: the rules beyond single fields hold too.

@@ -149,9 +149,11 @@ TEST(MergingTechniques, EachAloneGivesAllTheLightOfItsLength) {
 }
 
 TEST(MergingTechniques, WeightedAddUpToThePicture) {
-  VcmSettings vcm = test::of_length(VcmSettings{}, 4);
-  for (const bool connect : {true, false}) {
-    vcm.connect = connect;
+  const VcmSettings paired = test::of_length(VcmSettings{}, 4);
+  VcmSettings merges_only = paired, resampled = paired;
+  merges_only.connect = false;
+  resampled.connections = UniformSettings{};
+  for (const VcmSettings& vcm : {paired, merges_only, resampled}) {
     const IntegratorSettings settings = test::fixed_radius(vcm, 0.05, RadiusUnit::scene);
     const RenderSettings layered{
         .integrator = settings, .width = 12, .height = 10, .layers = {ImageLayer::strategies}};

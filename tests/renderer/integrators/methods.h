@@ -236,6 +236,8 @@ inline std::vector<Method> merging(int max_depth) {
     s.guide = in_small_pictures(SdTreeGuideSettings{});
     s.light_guide = SkeletonLightGuideSettings{};
   });
+  add("vcm_skeleton", VcmSettings{},
+      [](auto& s) { s.connections = SkeletonConnectionsSettings{}; });
   add("sppm", SppmSettings{}, [](auto& s) { s.light_paths = 300; });
   add("sppm_photons_only", SppmSettings{}, [](auto& s) {
     s.next_event_estimation = false;
