@@ -68,7 +68,10 @@ class PairedBdpt final : public MergingBdpt {
     return merging_.merge || takes_light_path() ? EmitterChoice::power : paired().emitters;
   }
   const PairedSettings& paired() const { return std::get<PairedSettings>(settings_.connections); }
-  bool takes_light_path() const { return paired().direct == DirectPoint::light_path; }
+  /// A photon does not store the point on the emitter.
+  bool takes_light_path() const {
+    return !merging_.merge && paired().direct == DirectPoint::light_path;
+  }
   bool one_ray() const { return paired().rays == ConnectionRays::one; }
   LightPathSetting light_setting(const IterationContext& context,
                                  const SampleCounts& counts) const {
@@ -405,7 +408,7 @@ std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) { return mak
 
 std::unique_ptr<Integrator> make_vcm(const VcmSettings& settings) {
   BdptSettings bdpt{static_cast<const PathLengths&>(settings)};
-  bdpt.connections = connections_of(settings);
+  bdpt.connections = settings.connections;
   bdpt.guide = settings.guide;
   bdpt.light_guide = settings.light_guide;
   return make(bdpt, {settings.merge, settings.connect, settings});

@@ -117,6 +117,7 @@ void reconcile(Settings& settings) {
   }
   if (auto* vcm = std::get_if<VcmSettings>(&settings); vcm && !vcm->conflict().empty()) {
     vcm->connect = true;
+    vcm->merge = false;
   }
 }
 
