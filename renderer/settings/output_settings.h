@@ -66,11 +66,9 @@ struct LightPathsLayer {
 template <class V>
 void describe(V& v, LightPathsLayer& s) {
   v("light", s.light,
-    {.doc =
-         "the paths, as a regular expression over E (eye), L (emitter) and what happens at each "
-         "vertex between them: D (diffuse), G (glossy), S (mirror or clear glass). `ELS` is no "
-         "path; `E[DG]L` is direct light, `LS+DE` are caustics, `!EDL` is all but diffuse direct "
-         "light",
+    {.doc = "the paths, as a regular expression over E (eye), L (emitter) and what happens at each "
+            "vertex between them: D (diffuse), G (glossy), S (mirror or clear glass). `E[DG]L` "
+            "is direct light, `LS+DE` are caustics, `!EDL` is all but diffuse direct light",
      .min = 1,
      .max = 256,
      .required = true});
