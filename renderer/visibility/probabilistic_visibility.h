@@ -21,8 +21,12 @@ class ProbabilisticVisibility : public VisibilityBase {
 
   bool needs_space() const;
   void prepare(const PrepareContext& context);
-  void save(ByteWriter& out) const { reliability_.save(out); }
-  void load(ByteReader& in) { reliability_.load(in); }
+  void save(ByteWriter& out) const {
+    if (learns()) reliability_.save(out);
+  }
+  void load(ByteReader& in) {
+    if (learns()) reliability_.load(in);
+  }
   std::uint64_t groups() const;
   LightGroup group(const VplGeometry& light) const;
   std::vector<BlockRange> passes(const VplSet& lights) const;

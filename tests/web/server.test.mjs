@@ -48,7 +48,7 @@ test("the first job, from the empty list to its curve, picture and report; then 
   await page.waitForSelector(pictured);
   assert.ok(Number(await page.locator(".plot").getAttribute("data-points")) >= 1);
   const offered = await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts();
-  assert.deepEqual(offered, ["MAE", "RMSE", "MSE", "relMSE", "SMAPE", "estimated RMSE"]);
+  assert.deepEqual(offered, ["MAE", "RMSE", "MSE", "relMSE", "SMAPE", "FLIP", "estimated RMSE"]);
   const curve = await (await fetch(`${address}/api/jobs/${first}/files/curve.csv`)).text();
   const told = await page.evaluate(async () => (await import("/job_tables.js")).metrics.map((m) => m.key));
   assert.deepEqual(curve.split("\n", 1)[0].split(",").slice(6, -4), told, "the curve's columns are the page's metrics");

@@ -232,7 +232,7 @@ TEST(JobFolder, TheManifestServesResultsAndNothingOfTheWorks) {
   EXPECT_EQ(names, (Names{"job.json", "outcome.json", "progress.json", "image.exr", "image.png",
                           "layers.half", "layers.json", "curve.csv", "report.json",
                           "checkpoint.bin", "accepted.json", "slurm.json", "slurm.sh", "slurm.exit",
-                          "choice.json", "inputs.json", "log.txt"}));
+                          "choice.json", "inputs.json", "log.txt", "program.log"}));
 }
 
 TEST(JobFolder, WhatAServiceTookItForIsKept) {
