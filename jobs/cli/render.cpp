@@ -115,8 +115,8 @@ void start_again(const JobFolder& folder) {
         fmt::format("{}: another process is rendering this job", folder.dir().string()));
   }
   folder.reopen();  // first: a job that is done has a checkpoint
-  for (const char* name :
-       {"checkpoint.bin", "inputs.json", "progress.json", "choice.json", "candidates"}) {
+  for (const char* name : {"checkpoint.bin", "inputs.json", "progress.json", "choice.json",
+                           "candidates", "measured.json"}) {
     fs::remove_all(folder.file(name));
   }
 }

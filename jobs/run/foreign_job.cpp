@@ -11,6 +11,7 @@
 #include "base/json/json_text.h"
 #include "base/storage/atomic_file.h"
 #include "jobs/run/foreign_program.h"
+#include "jobs/run/input_check.h"
 #include "jobs/run/job_reference.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/report_parts.h"
@@ -18,6 +19,7 @@
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/own_document.h"
+#include "jobs/sweep/estimate.h"
 #include "renderer/film/block_statistics.h"
 #include "renderer/film/flip.h"
 #include "renderer/images/image_read.h"
@@ -29,6 +31,7 @@ struct TimedPicture {
   std::string file;  ///< a path; in measured.json a name in the folder
   double seconds = 0;
   double cpu_seconds = std::numeric_limits<double>::quiet_NaN();  ///< divided by threads
+  std::string input = {};  ///< its name in the job, if it is an input
 };
 template <class V>
 void describe(V& v, TimedPicture& s) {
@@ -100,11 +103,8 @@ class ForeignRun {
       if (p.seed ? *p.seed != spec_.seed : !every && spec_.seed != 1) continue;
       const std::string name = fill_in(p.file, common());
       const fs::path file = reference_file(name, context_.data, context_.scenes);
-      prepared_.inputs.push_back(measure_input(file));
-      prepared_.inputs.back().role = InputRole::picture;
-      prepared_.inputs.back().name = name;
       found.push_back({file.string(), p.seconds,
-                       p.cpu_seconds.value_or(std::numeric_limits<double>::quiet_NaN())});
+                       p.cpu_seconds.value_or(std::numeric_limits<double>::quiet_NaN()), name});
     }
     sort(found);
     return found;
@@ -114,7 +114,12 @@ class ForeignRun {
   std::vector<TimedPicture> rendered() {
     const fs::path record = folder_.file("measured.json");
     MeasuredPictures done;
-    if (fs::exists(record)) done = read_own<MeasuredPictures>(record);
+    if (fs::exists(record)) {
+      const auto earlier = read_inputs(folder_);
+      if (earlier) refuse_changed_inputs(folder_, changed_inputs(*earlier, prepared_.inputs));
+      done = read_own<MeasuredPictures>(record);
+    }
+    write_inputs(folder_, prepared_.inputs);
     std::vector<double> times = settings_.seconds;
     if (times.empty())
       times = {spec_.budget.seconds.value_or(spec_.budget.cpu_seconds.value_or(0))};
@@ -158,7 +163,7 @@ class ForeignRun {
     }
     context_.observer.milestone(fmt::format("{}: {:.1f} s, {:.1f} CPU s on each of {} threads",
                                             settings_.program, seconds, cpu_seconds, threads));
-    return {name, seconds, cpu_seconds};
+    return {name, seconds, cpu_seconds, {}};
   }
 
   static void sort(std::vector<TimedPicture>& pictures) {
@@ -182,6 +187,11 @@ class ForeignRun {
                                    spec_.resolution[1]));
     }
     require_finite(image, p.file);
+    if (!p.input.empty()) {
+      prepared_.inputs.push_back(image.file);
+      prepared_.inputs.back().role = InputRole::picture;
+      prepared_.inputs.back().name = p.input;
+    }
     if (image.least_alpha && *image.least_alpha < 1) {
       running_.warn(fmt::format(
           "{} has alpha from {:g}: its colours are taken as they are, without a background", p.file,
@@ -211,12 +221,7 @@ class ForeignRun {
     if (std::min(spec_.resolution[0], spec_.resolution[1]) < side) return;
     const BlockStatistics blocks = block_statistics(
         {rgb, reference_->rgb, {}, spec_.resolution[0], spec_.resolution[1]}, side);
-    const auto mean = [](std::span<const double> all) {
-      double sum = 0;
-      for (const double v : all) sum += v;
-      return sum / static_cast<double>(all.size());
-    };
-    const double expected = mean(reference_->rgb), difference = mean(rgb) - expected;
+    const double expected = mean(reference_->rgb).value, difference = mean(rgb).value - expected;
     const double deviation = blocks.rms / std::sqrt(blocks.blocks);
     if (std::abs(difference) < most_deviations * deviation) return;
     if (std::abs(difference) < least_difference * std::abs(expected)) return;

@@ -9,10 +9,6 @@
 
 namespace lacuna {
 
-OrderedJson number_or_null(std::optional<double> v) {
-  return v ? OrderedJson(*v) : OrderedJson(nullptr);
-}
-
 OrderedJson reference_json(const Reference& reference, bool at_floor) {
   return {
       {"name", reference.name},

@@ -3,15 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/json/json_text.h"
+#include "base/json/number_or_null.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/reference.h"
 
 namespace lacuna {
 
 // Parts of report.json that jobs of all integrators have.
-
-OrderedJson number_or_null(std::optional<double> v);
 
 /// The reference that errors were measured against, and whether its noise dominates them.
 OrderedJson reference_json(const Reference& reference, bool at_floor);

@@ -2,14 +2,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json/json_text.h"
+#include "base/json/number_or_null.h"
 #include "jobs/sweep/answers.h"
 
 namespace lacuna {
 namespace {
-
-OrderedJson number_or_null(std::optional<double> value) {
-  return value ? OrderedJson(*value) : OrderedJson(nullptr);
-}
 
 OrderedJson to_json(const Estimate& e) {
   OrderedJson j{{"value", e.value}, {"n", e.n}};

@@ -86,8 +86,8 @@ double held_until(const NumberTable& table, const CurveAxes& axes, const Budget&
   return std::max(next, budget_end(budget, axes.clock));
 }
 
-/// The share by which the time of another program's picture may differ from that at which it is
-/// compared; its squared error is taken to be proportional to 1 / time there.
+/// Another program's picture is compared at times within this factor of its own; its squared error
+/// is taken to be proportional to 1 / time there.
 constexpr double near_in_time = 1.1;
 
 /// The curve of another program's pictures: extended to both sides, because separate runs never

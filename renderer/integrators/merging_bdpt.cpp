@@ -7,11 +7,10 @@ namespace lacuna {
 
 void MergingBdpt::look_up(const TilePass& pass, EyePaths& batch, LookUps& look_ups) const {
   if (look_ups.all.empty()) return;
-  SparseStop stop;
   const SampleCounts& counts = batch.counts;
   const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
   for (const LookUps::At& at : look_ups.all) {
-    stop.check(pass.context);
+    look_ups.stop.check(pass.context);
     const Vertex& v = batch.vertex(at.path, at.depth);
     const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
     const std::uint32_t pixel = batch.pixels[at.path];

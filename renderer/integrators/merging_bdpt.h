@@ -37,6 +37,7 @@ class MergingBdpt : public Bdpt {
     };
     std::vector<At> all;
     double seconds = 0;  ///< CPU time of look_up()
+    SparseStop stop = {};
     void add(std::size_t path, int depth) {
       all.push_back({static_cast<std::uint32_t>(path), depth});
     }

@@ -161,6 +161,9 @@ TEST_F(ForeignJob, PicturesOfAnInterruptedCommandStay) {
   EXPECT_EQ(folder.read_state().state, State::interrupted);
   const json record = json::parse(read_file(folder.file("measured.json"), 1 << 20));
   EXPECT_EQ(record["pictures"].size(), 1u);
+  // They belong to the files from which they were made.
+  picture("truth.exr", 2);
+  EXPECT_NE(refusal(folder).find("have changed since it was rendered"), std::string::npos);
 }
 
 TEST_F(ForeignJob, ACommandThatFailsSaysWhy) {
