@@ -24,12 +24,12 @@ std::vector<Row> all_rows(const Effort& effort) {
   return all;
 }
 
-/// In a quick run each row is put to every integrator with its defaults, and to a third of the
-/// other columns, to another third in the next row.
+/// In a quick run each row is put to every integrator with its defaults, and to a sixth of the
+/// other columns, to another sixth in the next row.
 bool is_left_to_long_runs(const Effort& effort, std::size_t row, std::size_t column,
                           const Method& method) {
   const bool has_choice = method.name.find(' ') != std::string::npos;
-  return effort.quick && has_choice && (row + column) % 3 != 0;
+  return effort.quick && has_choice && (row + column) % 6 != 0;
 }
 
 Verdict verdict(Stage& stage, const Row& row, const Method& method) {

@@ -5,13 +5,12 @@
 #include "analysis/artefacts/codec.h"
 #include "analysis/artefacts/entry_file.h"
 #include "tests/fuzz/input_file.h"
+#include "tests/fuzz/target.h"
 
 // An entry of the artefact cache. The bytes are read as a whole file, where the checksum stops
 // nearly all of them; behind a right header and under a right checksum as packed content, and as
 // content that was packed as it should be. Each kind of artefact is tried: refused, or a value
 // that is written as it was read.
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace lacuna::fuzz {
 namespace {
@@ -99,8 +98,7 @@ const std::string& own_entry(std::size_t kind) {
 
 /// A short input becomes an own entry, or its packed content behind a byte that is none of a
 /// file's.
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
+LACUNA_FUZZ_MUTATOR(cache_entry) {
   using namespace lacuna::fuzz;
   if (size < 8 && max_size > 512) {
     std::string start = own_entry(seed % 5);
@@ -112,7 +110,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 /// The first byte of an input chooses how it is read: that of a file of ours, as a file.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(cache_entry) {
   using namespace lacuna::fuzz;
   if (size == 0) return 0;
   const std::string bytes(reinterpret_cast<const char*>(data), size);

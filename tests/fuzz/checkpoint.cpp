@@ -6,12 +6,11 @@
 #include "base/storage/atomic_file.h"
 #include "jobs/run/render_loop.h"
 #include "tests/fuzz/input_file.h"
+#include "tests/fuzz/target.h"
 
 // A checkpoint. The bytes are read as a whole file, where the checksum stops nearly all of them,
 // and as the content of a file with a right header: refused, or a state from which the loop goes
 // on, and which it writes as it was.
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace lacuna::fuzz {
 namespace {
@@ -151,8 +150,7 @@ void read_as_content(const std::string& content) {
 }  // namespace lacuna::fuzz
 
 /// Begins with a checkpoint of today's layout, so that no stored one can be out of date.
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned) {
+LACUNA_FUZZ_MUTATOR(checkpoint) {
   const std::string& own = lacuna::fuzz::ready().own;
   if (size < 16 && own.size() <= max_size) {
     std::copy(own.begin(), own.end(), data);
@@ -161,7 +159,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return LLVMFuzzerMutate(data, size, max_size);
 }
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(checkpoint) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   lacuna::fuzz::read_as_file(bytes);
   lacuna::fuzz::read_as_content(bytes);

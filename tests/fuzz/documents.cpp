@@ -1,6 +1,7 @@
 #include "jobs/spec/described_json.h"
 #include "jobs/store/job_folder.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/target.h"
 
 // outcome.json and progress.json: refused with their problems, or written and read back without a
 // change. The text is tried as both.
@@ -11,7 +12,7 @@ namespace {
 constexpr DocumentLimits limits{1 << 16, 8};
 
 template <Described T>
-void read(std::string_view text) {
+void expect_read_back(std::string_view text) {
   T document;
   try {
     document = read_document<T>(text, limits);
@@ -26,9 +27,9 @@ void read(std::string_view text) {
 }  // namespace
 }  // namespace lacuna::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(documents) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  lacuna::fuzz::read<lacuna::JobState>(text);
-  lacuna::fuzz::read<lacuna::Progress>(text);
+  lacuna::fuzz::expect_read_back<lacuna::JobState>(text);
+  lacuna::fuzz::expect_read_back<lacuna::Progress>(text);
   return 0;
 }

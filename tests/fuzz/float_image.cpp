@@ -1,6 +1,7 @@
 #include "renderer/core/scene_error.h"
 #include "renderer/images/image_read.h"
 #include "tests/fuzz/input_file.h"
+#include "tests/fuzz/target.h"
 
 // An OpenEXR, Radiance HDR or TIFF file, as references and environments are: refused, or an image
 // of the size it says, for the picture itself and for a layer.
@@ -23,7 +24,7 @@ void read(const std::filesystem::path& file, const std::string& layer) {
 }  // namespace
 }  // namespace lacuna::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(float_image) {
   using namespace lacuna::fuzz;
   static const InputFile input("input.exr");
   const std::string layer = "half_a";

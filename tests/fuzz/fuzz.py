@@ -143,7 +143,7 @@ def replay(target):
         own = [f for pattern in target.seeds for f in ROOT.glob(pattern) if f.stat().st_size <= target.max_bytes]
         kept = [f for f in (ROOT / "tests/fuzz/corpus" / target.name).glob("*") if f.is_file()]
         files = sorted(own + kept) or [os.devnull]  # nothing is an input, too
-        done = subprocess.run([ROOT / f"build/release/tests/replay_{target.name}", *files], capture_output=True, text=True,
+        done = subprocess.run([ROOT / "build/release/tests/replay", target.name, *files], capture_output=True, text=True,
                               env={**os.environ, "TMPDIR": folder}, timeout=20 * SECONDS_PER_INPUT, check=False)
     passed = done.returncode == 0
     print(f"{target.name:<12} {'passed' if passed else 'FAILED'} {len(files)} inputs", flush=True)
@@ -159,7 +159,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=10, help="for each target (default: %(default)s)")
     parser.add_argument("--grow", action="store_true",
                         help="keep inputs that reach new code in build/fuzz/corpus, and begin with them")
-    parser.add_argument("--replay", action="store_true", help="the seeds alone, by the programs of build/release")
+    parser.add_argument("--replay", action="store_true", help="the seeds alone, by the program of build/release")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="targets at a time")
     asked = parser.parse_args()
     if unknown := set(asked.targets) - set(names):

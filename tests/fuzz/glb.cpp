@@ -6,13 +6,12 @@
 #include "renderer/integrators/path_tracer.h"
 #include "renderer/path/guide.h"
 #include "tests/fuzz/input_file.h"
+#include "tests/fuzz/target.h"
 #include "tests/renderer/gltf/glb_frame.h"
 #include "tests/renderer/gltf/scene_promises.h"
 
 // A .glb or .gltf, every other one at a time of its animations: refused, or a scene that keeps the
 // promises of SceneData, is built, and gives a small picture without a value that is not finite.
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace lacuna::fuzz {
 namespace {
@@ -62,8 +61,7 @@ std::size_t mutate_chunk(std::uint8_t* data, std::size_t size, std::size_t max_s
 }  // namespace
 }  // namespace lacuna::fuzz
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
+LACUNA_FUZZ_MUTATOR(glb) {
   std::minstd_rand random(seed);
   const auto choice = random() % 10;
   if (choice == 0) return LLVMFuzzerMutate(data, size, max_size);
@@ -77,7 +75,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   }
 }
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(glb) {
   using namespace lacuna;
   static const fuzz::InputFile input("input.glb");
   try {

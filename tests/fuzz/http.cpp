@@ -8,6 +8,7 @@
 #include "server/http/conditional.h"
 #include "server/http/file_response.h"
 #include "tests/fuzz/input_file.h"
+#include "tests/fuzz/target.h"
 
 // A request, as the HTTP library hands it over: what the service makes of its head, address and
 // body ends in a response, or in a refusal with a status of its own.
@@ -22,7 +23,7 @@ std::string_view take_line(std::string_view& text) {
 }
 
 /// "METHOD TARGET", lines of headers, an empty line, and a body; gives the target.
-std::string_view parse(std::string_view text, Request& request) {
+std::string_view read_request(std::string_view text, Request& request) {
   std::string_view line = take_line(text);
   request.method = line.substr(0, line.find(' '));
   line.remove_prefix(std::min(line.size(), request.method.size() + 1));
@@ -90,11 +91,12 @@ void check(const Response& response) {
 }  // namespace
 }  // namespace lacuna::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(http) {
   using namespace lacuna;
   static fuzz::Site site;
   Request request;
-  const std::string_view target = fuzz::parse({reinterpret_cast<const char*>(data), size}, request);
+  const std::string_view target =
+      fuzz::read_request({reinterpret_cast<const char*>(data), size}, request);
   try {
     fuzz::check(site.answer(request, target));
   } catch (const HttpError& error) {

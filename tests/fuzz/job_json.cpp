@@ -5,6 +5,7 @@
 #include "jobs/spec/identity.h"
 #include "jobs/spec/problems.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/target.h"
 
 // A job file: refused with its problems, or a job that is written and read back without a change.
 
@@ -23,7 +24,7 @@ std::optional<JobSpec> parse(std::string_view text) {
 }  // namespace
 }  // namespace lacuna::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(job_json) {
   using namespace lacuna;
   const auto spec = fuzz::parse({reinterpret_cast<const char*>(data), size});
   if (!spec) return 0;

@@ -5,6 +5,7 @@
 #include "jobs/import/ply_mesh.h"
 #include "renderer/core/scene_error.h"
 #include "tests/fuzz/imported_scene.h"
+#include "tests/fuzz/target.h"
 
 // A file as a mesh, by its first byte: PLY, one of Mitsuba's own (0x1C), else OBJ. Refused, or a
 // sound mesh.
@@ -22,7 +23,7 @@ lacuna::ImportedMesh mesh_of(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(mesh_file) {
   using namespace lacuna;
   try {
     ImportedMesh mesh = mesh_of({data, size});

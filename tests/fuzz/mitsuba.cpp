@@ -3,10 +3,11 @@
 #include "jobs/import/mitsuba/read_mitsuba.h"
 #include "renderer/core/scene_error.h"
 #include "tests/fuzz/imported_scene.h"
+#include "tests/fuzz/target.h"
 
 // A scene file of Mitsuba that names no others: refused with a place, or read as a sound scene.
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(mitsuba) {
   using namespace lacuna;
   try {
     fuzz::expect_sound(read_mitsuba_text({reinterpret_cast<const char*>(data), size}));

@@ -2,10 +2,11 @@
 #include "renderer/core/scene_error.h"
 #include "tests/fuzz/imported_scene.h"
 #include "tests/fuzz/input_file.h"
+#include "tests/fuzz/target.h"
 
 // A scene file of pbrt: refused with a place, or read as a sound scene.
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(pbrt) {
   using namespace lacuna;
   static const fuzz::InputFile file("scene.pbrt");
   const auto& path = file.holding({data, size});

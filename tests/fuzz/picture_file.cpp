@@ -4,10 +4,11 @@
 #include "renderer/core/scene_error.h"
 #include "renderer/images/image_read.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/target.h"
 
 // A TGA or a PFM, by its first byte: refused, or as many values as its size asks for.
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(picture_file) {
   using namespace lacuna;
   const std::span bytes(data, size);
   try {

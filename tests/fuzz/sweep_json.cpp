@@ -4,6 +4,7 @@
 #include "jobs/spec/job_json.h"
 #include "jobs/sweep/expand.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/target.h"
 
 // A sweep file: refused with its problems, or one that is written and read back without a change
 // and whose every run is a job.
@@ -33,7 +34,7 @@ bool is_small(const SweepSpec& sweep) {
 }  // namespace
 }  // namespace lacuna::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(sweep_json) {
   using namespace lacuna;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto sweep = fuzz::unless_refused([&] { return parse_sweep(text); });

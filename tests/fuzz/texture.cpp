@@ -2,10 +2,11 @@
 
 #include "renderer/geometry/scene_data.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/target.h"
 
 // A PNG or JPEG of a scene: refused, or texels that can be looked up anywhere.
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+LACUNA_FUZZ_TARGET(texture) {
   using namespace lacuna;
   Texture texture("input", {data, data + size}, Texture::Encoding::srgb, Texture::Wrap::repeat,
                   Texture::Wrap::mirrored);

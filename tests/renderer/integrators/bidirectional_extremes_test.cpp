@@ -64,7 +64,7 @@ TEST(BidirectionalExtremes, Depths) {
     const Rendering expected = by_path(lamp_room(), depth, 600);
     for (const Method& m : with_light(test::connections(depth), depth)) {
       SCOPED_TRACE(testing::Message() << m << ", depth " << depth);
-      const int iterations = depth < 64 ? 200 : 30;
+      const int iterations = depth < 64 ? 100 : 20;
       expect_same_picture(render(lamp_room(), small(m.settings, iterations)), expected, 0.05);
     }
   }
