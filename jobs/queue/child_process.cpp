@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <linux/close_range.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -39,7 +40,7 @@ struct Prepared {
   char* const* arguments;
   char* const* environment;
   const char* directory;
-  int input, output, report;
+  int input, output, errors, report;
   pid_t parent;
   std::uint64_t memory_bytes, file_bytes;
   int niceness;               // absolute
@@ -87,7 +88,7 @@ struct AbsoluteLimits {
   for (const int s : {SIGTERM, SIGINT, SIGPIPE, SIGHUP, SIGXFSZ}) ::signal(s, SIG_DFL);
   check(::dup2(p.input, STDIN_FILENO));
   check(::dup2(p.output, STDOUT_FILENO));
-  check(::dup2(p.output, STDERR_FILENO));
+  check(::dup2(p.errors, STDERR_FILENO));
   check(::syscall(SYS_close_range, 3U, ~0U, CLOSE_RANGE_CLOEXEC));
   check(::chdir(p.directory));
   sigset_t none;
@@ -114,7 +115,9 @@ ChildProcess::ChildProcess(const Command& command) {
   const FileHandle nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
   const FileHandle output(
       ::fcntl(command.output_fd >= 0 ? command.output_fd : nothing.get(), F_DUPFD_CLOEXEC, 3));
-  if (!nothing || !output) fail(errno, "a child's output");
+  const FileHandle errors(
+      ::fcntl(command.error_fd >= 0 ? command.error_fd : output.get(), F_DUPFD_CLOEXEC, 3));
+  if (!nothing || !output || !errors) fail(errno, "a child's output");
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(errno, "pipe");
   const FileHandle report(ends[0]);
@@ -128,6 +131,7 @@ ChildProcess::ChildProcess(const Command& command) {
                           command.directory.c_str(),
                           nothing.get(),
                           output.get(),
+                          errors.get(),
                           child_report.get(),
                           ::getpid(),
                           command.limits.memory_bytes,
@@ -188,11 +192,43 @@ Ending ChildProcess::reap() {
           cpu_seconds};
 }
 
+BoundedRun run_bounded(Command command, int stop, std::chrono::milliseconds time) {
+  const auto in_memory = [] {
+    FileHandle file(::memfd_create("output", MFD_CLOEXEC));
+    if (!file) fail(errno, "memfd_create");
+    return file;
+  };
+  const auto content = [](const FileHandle& file) {
+    const off_t size = ::lseek(file.get(), 0, SEEK_END);
+    std::string text(static_cast<std::size_t>(std::clamp<off_t>(size, 0, 64 << 20)), '\0');
+    const ssize_t n = ::pread(file.get(), text.data(), text.size(), 0);
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, n)));
+    return text;
+  };
+  const FileHandle output = in_memory(), errors = in_memory();
+  command.output_fd = output.get();
+  command.error_fd = errors.get();
+  ChildProcess child(command);
+  const bool in_time = child.wait(stop, time);
+  if (!in_time) {
+    child.signal(SIGKILL);
+    child.wait(-1, std::chrono::milliseconds(-1));
+  }
+  Ending end = child.reap();
+  return {std::move(end), in_time, content(output), content(errors)};
+}
+
+std::vector<std::string> own_environment() {
+  std::vector<std::string> all;
+  for (char** p = ::environ; *p != nullptr; ++p) all.emplace_back(*p);
+  return all;
+}
+
 std::string why_it_cannot_begin(Command command, const Ending& end, const StopSignal& stop) {
   constexpr std::chrono::seconds longest{10};  // for --version
   if (end.kind != Ending::Kind::killed || end.code == SIGXFSZ || stop.is_requested()) return {};
   command.arguments = {command.arguments.front(), "--version"};
-  command.output_fd = -1;
+  command.output_fd = command.error_fd = -1;
   ChildProcess child(command);
   if (!child.wait(stop.fd(), longest)) return {};
   const Ending trial = child.reap();

@@ -22,6 +22,7 @@ struct Command {
   std::vector<std::string> environment;  ///< "NAME=value"
   std::filesystem::path directory;       ///< working directory
   int output_fd = -1;                    ///< where its output goes; -1: discarded
+  int error_fd = -1;                     ///< where its standard error goes; -1: with its output
   ChildLimits limits;
 };
 
@@ -48,6 +49,21 @@ class ChildProcess {
   pid_t pid_ = -1;
   FileHandle process_;
 };
+
+/// How a command ended whose time was limited.
+struct BoundedRun {
+  Ending end;
+  bool in_time = true;         ///< false: it was killed, at the end of its time or for a stop
+  std::string output, errors;  ///< what it wrote, to its standard output and error
+};
+
+/// Runs a command to its end, for at most `time`, or until the descriptor `stop` is readable (-1:
+/// none). Its output is kept in memory, so that the limit of its files (ChildLimits::file_bytes)
+/// limits it, too; the first 64 MiB are returned. Throws std::system_error if it cannot be started.
+BoundedRun run_bounded(Command command, int stop, std::chrono::milliseconds time);
+
+/// The environment variables of this process: "NAME=value".
+std::vector<std::string> own_environment();
 
 /// If `command` ended by a signal, runs it with --version: why that fails, for example because the
 /// program or a library is truncated; empty: it succeeds, or no signal ended `command`. Throws

@@ -46,21 +46,6 @@ FileHandle open_log(const fs::path& file) {
   return log;
 }
 
-/// The service's own environment, with the folders of its command line.
-std::vector<std::string> child_environment(const ExecutorSettings& settings) {
-  std::vector<std::string> result = renderer_environment(settings);
-  const std::size_t ours = result.size();
-  for (char** p = ::environ; *p != nullptr; ++p) {
-    const std::string_view entry = *p;
-    const std::string_view name = entry.substr(0, entry.find('=') + 1);
-    const auto end = result.begin() + static_cast<std::ptrdiff_t>(ours);
-    const bool own = std::any_of(result.begin(), end,
-                                 [&](const std::string& set) { return set.starts_with(name); });
-    if (!own) result.emplace_back(entry);
-  }
-  return result;
-}
-
 }  // namespace
 
 StopSignal::StopSignal() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
@@ -92,6 +77,17 @@ std::vector<std::string> renderer_environment(const ExecutorSettings& settings) 
   return {"LACUNA_DATA=" + settings.data.string(), "LACUNA_CACHE=" + cache.string(),
           "LACUNA_SCENES=" + roots,
           fmt::format("LACUNA_GRACE={}", static_cast<double>(settings.grace.count()) / 1000)};
+}
+
+std::vector<std::string> child_environment(const ExecutorSettings& settings) {
+  const std::vector<std::string> set = renderer_environment(settings);
+  std::vector<std::string> all = set;
+  for (const std::string& entry : own_environment()) {
+    const std::string name = entry.substr(0, entry.find('=') + 1);
+    const auto sets = [&](const std::string& s) { return s.starts_with(name); };
+    if (std::ranges::none_of(set, sets)) all.push_back(entry);
+  }
+  return all;
 }
 
 void check_renderer(const ExecutorSettings& settings) {

@@ -11,6 +11,8 @@ namespace lacuna {
 /// The folders and the grace of `settings` as environment variables of a renderer:
 /// "LACUNA_DATA=...". Throws std::invalid_argument for a folder that these cannot express.
 std::vector<std::string> renderer_environment(const ExecutorSettings& settings);
+/// This process's environment with that of renderer_environment(). Throws likewise.
+std::vector<std::string> child_environment(const ExecutorSettings& settings);
 /// Throws std::invalid_argument if there is no such renderer.
 void check_renderer(const ExecutorSettings& settings);
 

@@ -23,12 +23,6 @@ namespace {
 
 constexpr std::chrono::milliseconds tick{100};
 
-std::vector<std::string> own_environment() {
-  std::vector<std::string> all;
-  for (char** p = ::environ; *p != nullptr; ++p) all.emplace_back(*p);
-  return all;
-}
-
 /// The last lines of a program's output, for an error message.
 std::string end_of(const std::filesystem::path& log) {
   constexpr std::size_t most = 400, most_read = 64 << 20;

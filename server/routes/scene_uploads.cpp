@@ -2,16 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <stdlib.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <fstream>
 #include <random>
 #include <stdexcept>
@@ -70,21 +66,9 @@ bool same_folders(const fs::path& there, const fs::path& draft) {
          }) == static_cast<std::ptrdiff_t>(files);
 }
 
-/// A file in memory for a child's output.
-FileHandle output_file() {
-  FileHandle file(::memfd_create("check", MFD_CLOEXEC));
-  if (!file) throw std::system_error(errno, std::generic_category(), "memfd_create");
-  return file;
-}
-
 /// The last line of a child's output, which contains the reason.
-std::string last_line(int fd) {
-  struct stat info {};
-  if (::fstat(fd, &info) != 0) return {};
-  std::string text(longest_reason, '\0');
-  const off_t from = std::max<off_t>(0, info.st_size - static_cast<off_t>(text.size()));
-  const ssize_t n = ::pread(fd, text.data(), text.size(), from);
-  text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, n)));
+std::string last_line(std::string text) {
+  text.erase(0, text.size() - std::min(text.size(), longest_reason));
   while (!text.empty() && text.back() == '\n') text.pop_back();
   text.erase(0, text.rfind('\n') + 1);  // npos + 1: there is only one
   return text;
@@ -96,17 +80,6 @@ std::string tidy(std::string text, const fs::path& draft) {
     if (text.starts_with(noise)) text.erase(0, noise.size());
   }
   return text;
-}
-
-bool is_requested(const StopSignal& stop) {
-  pollfd fd{stop.fd(), POLLIN, 0};
-  return ::poll(&fd, 1, 0) > 0;
-}
-
-std::vector<std::string> own_environment() {
-  std::vector<std::string> all;
-  for (char** p = ::environ; *p != nullptr; ++p) all.emplace_back(*p);
-  return all;
 }
 
 }  // namespace
@@ -207,7 +180,7 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
   const Upload upload(draft.file(), name);
   const std::unique_lock lock(checking_, std::try_to_lock);
   if (!lock) return upload.not_stored(Outcome::busy, "Another scene is being checked.");
-  if (is_requested(stop_)) {
+  if (stop_.is_requested()) {
     return upload.not_stored(Outcome::busy, "The service is shutting down.");
   }
   if (upload.archived) {
@@ -251,28 +224,23 @@ SceneUploads::Result SceneUploads::checked(const Upload& upload) const {
 
 /// Returns `created` if the scene is valid.
 SceneUploads::Result SceneUploads::check(const Upload& upload) const {
-  const FileHandle output = output_file();
   ChildLimits limits = settings_.limits;
   limits.file_bytes = longest_output;
   const Command command{
       .arguments = {settings_.renderer.string(), "check", "--scene", upload.scene.string()},
       .environment = own_environment(),
       .directory = settings_.folder,
-      .output_fd = output.get(),
       .limits = limits};
-  ChildProcess child(command);
-  if (!child.wait(stop_.fd(), settings_.time)) {
-    child.signal(SIGKILL);
-    child.wait(-1, std::chrono::milliseconds(-1));
-    child.reap();
-    if (is_requested(stop_)) {
+  const BoundedRun run = run_bounded(command, stop_.fd(), settings_.time);
+  if (!run.in_time) {
+    if (stop_.is_requested()) {
       return upload.not_stored(Outcome::busy, "The service is shutting down.");
     }
     return upload.not_stored(Outcome::refused,
                              fmt::format("it could not be checked within {} s",
                                          static_cast<double>(settings_.time.count()) / 1000));
   }
-  const Ending end = child.reap();
+  const Ending& end = run.end;
   const bool exited = end.kind == Ending::Kind::exited;
   if (exited && end.code == exit_done) return upload.stored(Outcome::created);
   if (exited && end.code == exit_memory) {
@@ -281,7 +249,7 @@ SceneUploads::Result SceneUploads::check(const Upload& upload) const {
         fmt::format("loading it takes more memory than allowed{}",
                     limits.memory_bytes > 0 ? ", " + byte_size_text(limits.memory_bytes) : ""));
   }
-  const std::string said = tidy(last_line(output.get()), upload.scene);
+  const std::string said = tidy(last_line(run.output + run.errors), upload.scene);
   const bool for_now = never_began(end) || (exited && end.code == exit_interrupted) ||
                        !why_it_cannot_begin(command, end, stop_).empty();
   if (for_now) return upload.not_stored(Outcome::busy, said.empty() ? end.reason : said);
