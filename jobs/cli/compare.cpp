@@ -7,6 +7,7 @@
 #include "jobs/cli/commands.h"
 #include "jobs/run/results.h"
 #include "jobs/store/inputs.h"
+#include "jobs/sweep/estimate.h"
 #include "renderer/film/block_statistics.h"
 #include "renderer/film/crop.h"
 #include "renderer/film/display_errors.h"
@@ -47,12 +48,6 @@ std::vector<double> in_double(const FloatImage& image, const PixelRect& crop,
   const FloatImage part{crop.width, crop.height, cut(image.rgb, image.width, crop), {}};
   require_finite(part, label);
   return {part.rgb.begin(), part.rgb.end()};
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
 }
 
 /// Variance of a - b, from the known layers; empty: A has no such layer.
@@ -167,8 +162,9 @@ void compare(CompareOptions o) {
   fmt::print("{:<7} {:.9g}\nflip_exposures {:.4f} to {:.4f}, {}\n", enum_name(ErrorMetric::flip),
              flip_mean(hdr_flip(both, exposures, &pool)), exposures.start, exposures.stop,
              exposures.count);
-  fmt::print("mean_a  {:.9g}\nmean_b  {:.9g}\nmean_relative {:.6g}\n", mean(a), mean(b),
-             (mean(a) - mean(b)) / mean(b));
+  const double mean_a = mean(a).value, mean_b = mean(b).value;
+  fmt::print("mean_a  {:.9g}\nmean_b  {:.9g}\nmean_relative {:.6g}\n", mean_a, mean_b,
+             (mean_a - mean_b) / mean_b);
   const double exposure = preview_exposure(b);
   const DisplayErrors d = display_errors(a, b, crop.width, crop.height, exposure);
   fmt::print("exposure {:.6g}\ndisplay_mse {:.6g}\npsnr {:.6g}\nssim {:.6g}\ndisplay_flip {:.6g}\n",

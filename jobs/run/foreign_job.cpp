@@ -204,8 +204,9 @@ class ForeignRun {
     if (reference_) {
       const std::vector<double> rgb(image.rgb.begin(), image.rgb.end());
       row.errors = errors(rgb, reference_->rgb);
+      if (!flip_exposures_) flip_exposures_ = flip_exposures(reference_->rgb);
       row.flip = flip_mean(hdr_flip({rgb, reference_->rgb, image.width, image.height},
-                                    flip_exposures(reference_->rgb), prepared_.pool.get()));
+                                    *flip_exposures_, prepared_.pool.get()));
       row.at_floor = reference_->mse && *reference_->mse > (*row.errors)[ErrorMetric::mse] / 2;
       compare_means(p.file, rgb);
     }
@@ -272,6 +273,7 @@ class ForeignRun {
   Running& running_;
   Prepared prepared_;
   std::optional<Reference> reference_;
+  std::optional<FlipExposures> flip_exposures_;  // of the reference
   Curve curve_;
 };
 
