@@ -17,7 +17,7 @@ function cropsOf(picture, cells, names) {
   const shown = cells.map((cell) => [cell, found.cells.find((c) => c.cell === cell.cell)]).filter(([, c]) => c);
   return [
     h("h2", "The same part of each picture"),
-    note(`${width} × ${height} pixels at (${x}, ${y}), where the cells' errors are largest, at one exposure, of each `
+    note(`${width} × ${height} pixels at (${x}, ${y}), where the cells' errors differ most, at one exposure, of each `
       + "cell's first seed."),
     shown.length > 0 && aboutTimes(shown.map(([, c]) => c.seconds)),
     h("div.crops", found.reference && figure(found.reference, "The reference", "reference"),

@@ -17,6 +17,7 @@ namespace {
 struct FigureOptions {
   std::filesystem::path spec, suggest;
   std::vector<std::filesystem::path> out;
+  bool ids = false;
 };
 
 std::string format_problem(const std::string& file) {
@@ -40,7 +41,7 @@ void suggest(const FigureOptions& o) {
 void figure(const FigureOptions& o) {
   if (!o.suggest.empty()) return suggest(o);
   const FigureSource source(parse_figure(read_file(o.spec, max_figure_bytes)),
-                            o.spec.parent_path());
+                            o.ids ? std::nullopt : std::optional(o.spec.parent_path()));
   for (const std::string& warning : source.answers().warnings) {
     fmt::print(stderr, "warning: {}\n", warning);
   }
@@ -71,6 +72,8 @@ void add_figure(CLI::App& app, int& code) {
           ->type_name("SWEEP")
           ->check(CLI::ExistingDirectory)
           ->excludes(spec);
+  command->add_flag("--ids", o->ids,
+                    "SPEC names its sweep or jobs by ids in the data folder, never by paths");
   command->callback([o, spec, out, suggested, &code] {
     if (spec->empty() && suggested->empty()) throw CLI::RequiredError("SPEC or --suggest");
     if (!spec->empty() && out->empty()) throw CLI::RequiredError("--out");

@@ -4,24 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ranges>
 
+#include "jobs/report/sweep_pictures.h"
 #include "jobs/spec/described_json.h"
 #include "renderer/film/crop.h"
 
 namespace lacuna {
 namespace {
-
-namespace fs = std::filesystem;
-
-SweepFolder open_sweep(const FigureSpec& spec, const fs::path& folder) {
-  const fs::path dir = folder / spec.sweep;
-  if (!fs::exists(dir / "sweep.json")) {
-    throw BadJob({{"/sweep", fmt::format("found \"{}\", but {} has no sweep.json; allowed: the "
-                                         "folder of a sweep, relative to this file",
-                                         spec.sweep, dir.string())}});
-  }
-  return SweepFolder(dir);
-}
 
 /// Whether the cell has all of these settings.
 bool has(const SweepCell& cell, const JsonTable<JsonValue>& settings) {
@@ -34,8 +24,8 @@ bool has(const SweepCell& cell, const JsonTable<JsonValue>& settings) {
 /// Finds the pictures and cells that the scenes and methods of a figure name.
 class Finder {
  public:
-  Finder(const FigureSpec& spec, const SweepPlan& plan, const Answers& answers)
-      : spec_(spec), plan_(plan), answers_(answers) {}
+  Finder(FigureSpec& spec, const FigureCells& cells, const Answers& answers)
+      : spec_(spec), methods_(cells.methods), plan_(cells.sweep.plan()), answers_(answers) {}
 
   std::vector<FigureRow> run() {
     for (std::size_t m = 0; m < spec_.methods.size(); ++m) {
@@ -43,11 +33,11 @@ class Finder {
     }
     for (std::size_t s = 0; s < spec_.scenes.size(); ++s) {
       const std::string at = fmt::format("/scenes/{}", s);
-      if (!check_pointers(spec_.scenes[s].settings, at + "/settings")) continue;
-      if (const auto picture = find_picture(s)) add_row(s, *picture);
+      if (check_pointers(spec_.scenes[s].settings, at + "/settings")) add_rows(s);
     }
     for (std::size_t m = 0; m < spec_.methods.size() && problems_.empty(); ++m) check_used(m);
     throw_if_any(std::move(problems_));
+    spec_.scenes = std::move(scenes_);
     return std::move(rows_);
   }
 
@@ -61,10 +51,8 @@ class Finder {
     const auto& swept = plan_.cells.front().settings;
     for (const auto& [pointer, value] : settings) {
       if (swept.contains(pointer)) continue;
-      std::vector<std::string> names;
-      for (const auto& [name, any] : swept) names.push_back(name);
       problem(at, fmt::format("found \"{}\", which the sweep does not vary; allowed: \"{}\"",
-                              pointer, fmt::join(names, "\", \"")));
+                              pointer, fmt::join(std::views::keys(swept), "\", \"")));
     }
     return problems_.size() == before;
   }
@@ -75,36 +63,46 @@ class Finder {
                        [&](std::size_t c) { return has(plan_.cells[c], settings); });
   }
 
-  std::optional<std::size_t> find_picture(std::size_t scene) {
+  /// A row for each picture with the settings of a scene.
+  void add_rows(std::size_t scene) {
     std::vector<std::size_t> found;
     std::vector<std::string> texts;
     for (std::size_t p = 0; p < answers_.pictures.size(); ++p) {
       texts.push_back(answers_.pictures[p].text);
       if (is_of(p, spec_.scenes[scene].settings)) found.push_back(p);
     }
-    if (found.size() == 1) return found.front();
-    problem(fmt::format("/scenes/{}/settings", scene),
-            fmt::format("{} pictures of the sweep have these settings; allowed: settings of one "
-                        "of its pictures: \"{}\"",
-                        found.empty() ? "no" : std::to_string(found.size()),
-                        fmt::join(texts, "\", \"")));
-    return {};
+    if (found.empty()) {
+      problem(fmt::format("/scenes/{}/settings", scene),
+              fmt::format("no picture has these settings; allowed: settings of some of \"{}\"",
+                          fmt::join(texts, "\", \"")));
+    }
+    for (const std::size_t p : found) {
+      FigureScene& row = scenes_.emplace_back(spec_.scenes[scene]);
+      if (found.size() > 1)
+        row.name += texts[p].empty() ? fmt::format(" {}", p + 1) : ", " + texts[p];
+      add_row(scene, p);
+    }
   }
 
   void add_row(std::size_t scene, std::size_t picture) {
     FigureRow row{picture, {}, {}};
     const auto& cells = answers_.pictures[picture].cells;
     row.resolution = plan_.cells[cells.front()].job.resolution;
+    const auto is_done = [&](std::size_t c) { return !answers_.cells[c].done.empty(); };
+    if (std::none_of(cells.begin(), cells.end(), is_done)) {
+      problem(fmt::format("/scenes/{}", scene), "no run of this picture is done");
+    }
     for (std::size_t m = 0; m < spec_.methods.size(); ++m) {
       std::vector<std::string> texts;
       auto& cell = row.cells.emplace_back();
       for (const std::size_t c : cells) {
+        if (!methods_.empty() && methods_[c] != m) continue;
         if (!has(plan_.cells[c], spec_.methods[m].settings)) continue;
         cell = c;
         texts.push_back(cell_text(plan_.cells[c].settings));
       }
       if (texts.size() < 2) continue;
-      problem(fmt::format("/methods/{}/settings", m),
+      problem(fmt::format("/methods/{}/{}", m, methods_.empty() ? "settings" : "jobs"),
               fmt::format("{} cells of scene \"{}\" have these settings; allowed: settings of one "
                           "of them: \"{}\"",
                           texts.size(), spec_.scenes[scene].name, fmt::join(texts, "\", \"")));
@@ -144,9 +142,11 @@ class Finder {
                         fmt::join(texts, "\", \"")));
   }
 
-  const FigureSpec& spec_;
+  FigureSpec& spec_;
+  const std::vector<std::size_t>& methods_;  // of the cells
   const SweepPlan& plan_;
   const Answers& answers_;
+  std::vector<FigureScene> scenes_;  // of the rows
   std::vector<FigureRow> rows_;
   std::vector<Problem> problems_;
 };
@@ -161,25 +161,31 @@ FigureSpec parse_figure(std::string_view json) {
                                                   "reference",
                                                   enum_name(*spec.error_map))});
   }
+  for (std::size_t m = 0; m < spec.methods.size(); ++m) {
+    if (spec.methods[m].jobs.empty() == spec.sweep.has_value()) continue;
+    problems.push_back({fmt::format("/methods/{}/jobs", m),
+                        spec.sweep ? "found jobs beside \"sweep\"; allowed: one of the two"
+                                   : "found none; allowed: jobs, or \"sweep\""});
+  }
   throw_if_any(std::move(problems));
   return spec;
 }
 
-FigureSource::FigureSource(FigureSpec spec, const fs::path& folder)
-    : spec_(std::move(spec)), sweep_(open_sweep(spec_, folder)), metrics_(spec_.metrics) {
-  CompareAt at = sweep_.spec().compare_at;
+FigureSource::FigureSource(FigureSpec spec, const std::optional<std::filesystem::path>& folder)
+    : spec_(std::move(spec)), cells_(open_cells(spec_, folder)), metrics_(spec_.metrics) {
+  CompareAt at = sweep().spec().compare_at;
   if (spec_.seconds) at.seconds = {*spec_.seconds};
   if (spec_.error) at.errors = {*spec_.error};
   if (metrics_.empty()) {
-    answers_.push_back(answer(sweep_, at));
+    answers_.push_back(answer(sweep(), at));
     metrics_.push_back(answers_.front().axes.metric);
   }
   while (answers_.size() < metrics_.size()) {
     at.metric = metrics_[answers_.size()];
-    answers_.push_back(answer(sweep_, at));
+    answers_.push_back(answer(sweep(), at));
     at.errors.clear();  // errors of the first metric only
   }
-  rows_ = Finder(spec_, sweep_.plan(), answers_.front()).run();
+  rows_ = Finder(spec_, cells_, answers_.front()).run();
 }
 
 const CellAnswer* FigureSource::cell(std::size_t row, std::size_t method,
@@ -188,6 +194,20 @@ const CellAnswer* FigureSource::cell(std::size_t row, std::size_t method,
   if (!index) return nullptr;
   const CellAnswer& c = answers_[metric].cells[*index];
   return c.done.empty() ? nullptr : &c;
+}
+
+std::optional<std::vector<double>> FigureSource::picture(std::size_t row,
+                                                         std::size_t method) const {
+  const CellAnswer* c = cell(row, method);
+  return c == nullptr ? std::nullopt : std::optional(read_picture(sweep(), c->done.front()));
+}
+
+std::optional<Reference> FigureSource::reference(std::size_t row) const {
+  std::vector<std::size_t> cells;
+  for (const auto& c : rows_[row].cells) {
+    if (c) cells.push_back(*c);
+  }
+  return read_reference_of(sweep(), answers(), cells);
 }
 
 const ErrorAtTime* FigureSource::error(std::size_t row, std::size_t method,
@@ -203,14 +223,16 @@ const TimeToError* FigureSource::time(std::size_t row, std::size_t method) const
 
 namespace {
 
-/// The index of the smallest of two or more known values.
-std::optional<std::size_t> smallest(const std::vector<std::optional<double>>& values) {
+/// The smallest of two or more known values among `n`, by its index.
+template <class ValueOf>
+std::optional<std::size_t> smallest(std::size_t n, const ValueOf& value_of) {
   std::optional<std::size_t> best;
   std::size_t known = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!values[i]) continue;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::optional<double> value = value_of(i);
+    if (!value) continue;
     ++known;
-    if (!best || *values[i] < *values[*best]) best = i;
+    if (!best || *value < *value_of(*best)) best = i;
   }
   return known > 1 ? best : std::nullopt;
 }
@@ -218,21 +240,17 @@ std::optional<std::size_t> smallest(const std::vector<std::optional<double>>& va
 }  // namespace
 
 std::optional<std::size_t> FigureSource::best_error(std::size_t row, std::size_t metric) const {
-  std::vector<std::optional<double>> values;
-  for (std::size_t m = 0; m < spec_.methods.size(); ++m) {
+  return smallest(spec_.methods.size(), [&](std::size_t m) {
     const ErrorAtTime* at = error(row, m, metric);
-    values.push_back(at != nullptr && at->error ? std::optional(at->error->value) : std::nullopt);
-  }
-  return smallest(values);
+    return at != nullptr && at->error ? std::optional(at->error->value) : std::nullopt;
+  });
 }
 
 std::optional<std::size_t> FigureSource::best_time(std::size_t row) const {
-  std::vector<std::optional<double>> values;
-  for (std::size_t m = 0; m < spec_.methods.size(); ++m) {
+  return smallest(spec_.methods.size(), [&](std::size_t m) {
     const TimeToError* to = time(row, m);
-    values.push_back(to != nullptr && to->time ? std::optional(to->time->value) : std::nullopt);
-  }
-  return smallest(values);
+    return to != nullptr && to->time ? std::optional(to->time->value) : std::nullopt;
+  });
 }
 
 }  // namespace lacuna

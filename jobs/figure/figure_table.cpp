@@ -9,7 +9,6 @@
 namespace lacuna {
 namespace {
 
-/// In brackets: not supported, because most of the measured error is the reference's noise.
 std::string bracketed(std::string text, bool at_floor) {
   return at_floor ? fmt::format("({})", text) : text;
 }
@@ -17,8 +16,7 @@ std::string bracketed(std::string text, bool at_floor) {
 FigureTableCell error_cell(const ErrorAtTime* at) {
   if (at == nullptr) return {"–", "", false};
   if (!at->error) return {fmt::format("{} runs", at->reached), "", false};
-  return {bracketed(figure_number(at->error->value), at->at_floor), figure_interval(*at->error),
-          false};
+  return {error_text(*at), figure_interval(*at->error), false};
 }
 
 FigureTableCell time_cell(const TimeToError* to) {
@@ -102,13 +100,6 @@ class TableMaker {
   FigureTable table_;
 };
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string csv_numbers(const std::optional<Estimate>& e) {
   if (!e) return ",,,";
   if (!e->interval) return fmt::format("{:.17g},,,{}", e->value, e->n);
@@ -125,6 +116,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 }  // namespace
+
+std::string error_text(const ErrorAtTime& at) {
+  return bracketed(figure_number(at.error->value), at.at_floor);
+}
 
 FigureTable figure_table(const FigureSource& source) { return TableMaker(source).run(); }
 
@@ -150,28 +145,13 @@ std::string table_markdown(const FigureTable& table) {
 std::string latex_text(const std::string& text) {
   std::string safe;
   for (const char c : text) {
-    switch (c) {
-      case '\\':
-        safe += "\\textbackslash{}";
-        break;
-      case '~':
-        safe += "\\textasciitilde{}";
-        break;
-      case '^':
-        safe += "\\textasciicircum{}";
-        break;
-      case '&':
-      case '%':
-      case '$':
-      case '#':
-      case '_':
-      case '{':
-      case '}':
-        safe += '\\';
-        [[fallthrough]];
-      default:
-        safe += c;
-    }
+    const bool special = std::string_view("&%$#_{}").find(c) != std::string_view::npos;
+    safe += c == '\\'  ? "\\textbackslash{}"
+            : c == '~' ? "\\textasciitilde{}"
+            : c == '^' ? "\\textasciicircum{}"
+            : c == '<' ? "$<$"
+            : c == '>' ? "$>$"
+                       : (special ? "\\" : "") + std::string(1, c);
   }
   constexpr std::array<std::array<const char*, 2>, 16> signs{{{" · ", "$\\cdot$"},
                                                               {"×", "$\\times$"},
@@ -188,7 +168,7 @@ std::string latex_text(const std::string& text) {
                                                               {"⁷", "$^7$"},
                                                               {"⁸", "$^8$"},
                                                               {"⁹", "$^9$"},
-                                                              {"> ", "$>$\\,"}}};
+                                                              {"−", "$-$"}}};
   for (const auto& [sign, command] : signs) safe = replaced(safe, sign, command);
   return safe;
 }

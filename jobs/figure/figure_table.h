@@ -31,6 +31,8 @@ std::string table_latex(const FigureTable& table);
 /// A row for each scene, method and quantity, with all digits (CSV, RFC 4180).
 std::string table_csv(const FigureSource& source);
 
+/// An error that is known, with three digits; in brackets if most of it is the reference's noise.
+std::string error_text(const ErrorAtTime& at);
 /// Text that LaTeX shows as it is; superscripts and "·" become mathematics.
 std::string latex_text(const std::string& text);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/storage/atomic_file.h"
 #include "jobs/figure/surface.h"
 #include "renderer/images/png_write.h"
@@ -53,7 +55,7 @@ class TexWriter {
     const RowPictures& row = rows_[r];
     const FigureScene& scene = source_.spec().scenes[r];
     const std::size_t methods = source_.spec().methods.size(), columns = row.details.size();
-    const double width = 0.96 / static_cast<double>(columns);
+    const double width = std::min(0.24, 0.96 / static_cast<double>(columns));  // fits a page
     text_ += fmt::format("\n\\begin{{figure*}}\n\\centering\n{}\n\n",
                          piece(fmt::format("{}-whole", r + 1), row.whole, 0.5));
     text_ += fmt::format("\\setlength{{\\tabcolsep}}{{1pt}}\n\\begin{{tabular}}{{{}}}\n",
@@ -93,8 +95,8 @@ class TexWriter {
   std::string number(std::size_t row, std::size_t method, std::size_t metric) const {
     const ErrorAtTime* at = source_.error(row, method, metric);
     if (at == nullptr || !at->error) return "";
-    const std::string text = latex_text(fmt::format(
-        "{} {}", lacuna::row_of(source_.metrics()[metric]).label, figure_number(at->error->value)));
+    const std::string text = latex_text(
+        fmt::format("{} {}", lacuna::row_of(source_.metrics()[metric]).label, error_text(*at)));
     const bool best = source_.best_error(row, metric) == method;
     return best ? fmt::format("\\textbf{{{}}}", text) : text;
   }

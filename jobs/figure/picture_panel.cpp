@@ -151,9 +151,7 @@ class RowPainter {
       for (std::size_t m = 0; m < methods(); ++m) {
         const ErrorAtTime* at = source_.error(index_, m, k);
         if (at == nullptr || !at->error) continue;
-        const std::string value = figure_number(at->error->value);
-        values[m] = fmt::format("{} {}", row_of(source_.metrics()[k]).label,
-                                at->at_floor ? fmt::format("({})", value) : value);
+        values[m] = fmt::format("{} {}", row_of(source_.metrics()[k]).label, error_text(*at));
         intervals[m] = figure_interval(*at->error);
       }
       paint_line(y += 8, values, value_style, source_.best_error(index_, k));

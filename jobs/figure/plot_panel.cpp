@@ -46,21 +46,23 @@ class Plot {
 
   /// Whether a curve reaches the reference's noise, which is drawn with dashes.
   bool has_floor() const {
-    for (std::size_t m = 0; m < source_.spec().methods.size(); ++m) {
-      const auto* curve = curve_of(m);
-      if (curve == nullptr) continue;
-      if (std::any_of(curve->begin(), curve->end(),
-                      [](const BandPoint& p) { return p.at_floor; })) {
-        return true;
-      }
-    }
-    return false;
+    bool floor = false;
+    each_point([&](const BandPoint& p) { floor = floor || p.at_floor; });
+    return floor;
   }
 
  private:
   const std::vector<BandPoint>* curve_of(std::size_t method) const {
     const CellAnswer* cell = source_.cell(row_, method);
     return cell == nullptr || cell->curve.empty() ? nullptr : &cell->curve;
+  }
+
+  template <class Act>
+  void each_point(const Act& act) const {
+    for (std::size_t m = 0; m < source_.spec().methods.size(); ++m) {
+      const auto* curve = curve_of(m);
+      if (curve != nullptr) std::ranges::for_each(*curve, act);
+    }
   }
 
   /// The error of the reference itself by the figure's metric, where its definition gives one.
@@ -76,18 +78,14 @@ class Plot {
     const auto take = [](std::array<double, 2>& range, double v) {
       range = {std::min(range[0], v), std::max(range[1], v)};
     };
-    for (std::size_t m = 0; m < source_.spec().methods.size(); ++m) {
-      const auto* curve = curve_of(m);
-      if (curve == nullptr) continue;
-      for (const BandPoint& p : *curve) {
-        take(times_, p.time);
-        take(errors_, p.error.value);
-        // A band that spans more than a decade does not set the scale alone.
-        if (!p.error.interval) continue;
-        take(errors_, std::max(p.error.interval->low, p.error.value / 3));
-        take(errors_, std::min(p.error.interval->high, p.error.value * 3));
-      }
-    }
+    each_point([&](const BandPoint& p) {
+      take(times_, p.time);
+      take(errors_, p.error.value);
+      // A band that spans more than a decade does not set the scale alone.
+      if (!p.error.interval) return;
+      take(errors_, std::max(p.error.interval->low, p.error.value / 3));
+      take(errors_, std::min(p.error.interval->high, p.error.value * 3));
+    });
     if (noise_ && *noise_ > errors_[0] / 10) take(errors_, *noise_);
     errors_[0] /= 1.12;
     errors_[1] *= 1.12;
@@ -131,15 +129,11 @@ class Plot {
     const double slope = lacuna::row_of(source_.metrics().front()).squared ? -1 : -0.5;
     double offset = 0;
     int points = 0;
-    for (std::size_t m = 0; m < source_.spec().methods.size(); ++m) {
-      const auto* curve = curve_of(m);
-      if (curve == nullptr) continue;
-      for (const BandPoint& p : *curve) {
-        if (p.at_floor) continue;
-        offset += std::log(p.error.value) - slope * std::log(p.time);
-        ++points;
-      }
-    }
+    each_point([&](const BandPoint& p) {
+      if (p.at_floor) return;
+      offset += std::log(p.error.value) - slope * std::log(p.time);
+      ++points;
+    });
     if (points < 2 || source_.metrics().front() == ErrorMetric::flip) return;
     const auto error = [&](double t) { return std::exp(offset / points + slope * std::log(t)); };
     const auto time = [&](double e) { return std::exp((std::log(e) - offset / points) / slope); };

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "jobs/run/reference.h"
 #include "renderer/film/error_map.h"
 #include "renderer/film/flip_colour.h"
 #include "renderer/film/preview.h"
-#include "renderer/geometry/scene_data.h"
-#include "renderer/images/image_read.h"
 
 namespace lacuna {
 namespace {
@@ -87,32 +84,6 @@ class ToneMapper {
   double scale_;
 };
 
-}  // namespace
-
-std::optional<std::vector<double>> RowReader::picture(std::size_t method) const {
-  const CellAnswer* cell = source.cell(row, method);
-  if (cell == nullptr) return {};
-  const SweepRun& run = source.sweep().plan().runs[cell->done.front()];
-  const FloatImage image = read_float_image(source.sweep().folder(run).file("image.exr"));
-  return std::vector<double>(image.rgb.begin(), image.rgb.end());
-}
-
-std::optional<std::vector<double>> RowReader::reference(std::optional<double>* mse) const {
-  for (std::size_t m = 0; m < source.spec().methods.size(); ++m) {
-    const CellAnswer* cell = source.cell(row, m);
-    if (cell == nullptr) continue;
-    const auto& file = source.answers().results[cell->done.front()].reference_file;
-    if (!file || !std::filesystem::exists(*file)) continue;
-    const JobSpec& job = source.sweep().plan().cells[cell->cell].job;
-    Reference found = read_reference(job.reference, *file, job.resolution);
-    if (mse != nullptr) *mse = found.mse;
-    return std::move(found.rgb);
-  }
-  return {};
-}
-
-namespace {
-
 /// Maps of one scale in false colours; empty where `maps` are.
 std::vector<CodeImage> coloured(const std::vector<Values>& maps, double largest) {
   std::vector<CodeImage> images;
@@ -129,11 +100,11 @@ RowPictures read_row(const FigureSource& source, std::size_t row, double page_wi
   const FigureSpec& spec = source.spec();
   const FigureScene& scene = spec.scenes[row];
   const auto [width, height] = source.rows()[row].resolution;
-  const RowReader read{source, row};
   RowPictures out;
   for (const auto& [x, y, w, h] : scene.crops) out.crops.push_back({x, y, w, h});
   if (out.crops.empty()) out.crops.push_back({0, 0, width, height});
-  const auto reference = read.reference(&out.reference_mse);
+  const auto reference = source.reference(row);
+  if (reference) out.reference_mse = reference->mse;
   const std::size_t columns = spec.methods.size() + (reference ? 1 : 0);
   out.shape = {{width, height},
                {out.crops[0].width, out.crops[0].height},
@@ -157,16 +128,16 @@ RowPictures read_row(const FigureSource& source, std::size_t row, double page_wi
     return details;
   };
   std::vector<CodeImage> of_reference;
-  if (reference) of_reference = show(*reference, "reference");
+  if (reference) of_reference = show(reference->rgb, "reference");
   std::vector<Values> maps;
   double largest = 0;
   for (std::size_t m = 0; m < spec.methods.size(); ++m) {
-    const auto rgb = read.picture(m);
+    const auto rgb = source.picture(row, m);
     out.details.push_back(rgb ? show(*rgb, spec.methods[m].name) : std::vector<CodeImage>{});
     if (!out.shape.mapped) continue;
     maps.emplace_back();
     if (!rgb) continue;
-    const auto map = error_map(*spec.error_map, {*rgb, *reference, width, height});
+    const auto map = error_map(*spec.error_map, {*rgb, reference->rgb, width, height});
     largest = std::max(largest, largest_shown_error(*spec.error_map, map));
     maps.back() = shrunk({width, height, 1, {map.begin(), map.end()}}, sizes.detail_width);
   }

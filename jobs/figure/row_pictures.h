@@ -28,13 +28,4 @@ struct RowPictures {
 /// it are averages of displayed values. Throws SceneError, InputUnreadable.
 RowPictures read_row(const FigureSource& source, std::size_t row, double page_width);
 
-/// The picture of a cell's first finished run, and a row's reference, if it still exists.
-struct RowReader {
-  const FigureSource& source;
-  std::size_t row;
-
-  std::optional<std::vector<double>> picture(std::size_t method) const;
-  std::optional<std::vector<double>> reference(std::optional<double>* mse = nullptr) const;
-};
-
 }  // namespace lacuna

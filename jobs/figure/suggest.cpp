@@ -3,19 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/json/json_text.h"
-#include "jobs/figure/row_pictures.h"
-#include "renderer/settings/error_metrics.h"
+#include "jobs/figure/figure_source.h"
+#include "jobs/report/telling_crops.h"
 
 namespace lacuna {
 namespace {
 
 constexpr std::size_t most_methods = 8, most_scenes = 12;
+
+/// The first 60 characters of a name (UTF-8), as many as a figure's file allows.
+std::string shortened(const std::string& name) {
+  std::size_t end = 0;
+  for (int characters = 0; end < name.size(); ++end) {
+    if ((name[end] & 0xC0) != 0x80 && ++characters > 60) break;  // a character begins
+  }
+  return name.substr(0, end);
+}
 
 /// "Cornell ball", of cornell_ball.glb.
 std::string scene_name(const JobSpec& job) {
@@ -33,7 +39,7 @@ void tell_apart(std::vector<FigureScene>& scenes) {
     if (same[s.name] < 2) continue;
     JsonTable<JsonValue> others = s.settings;
     others.erase("/scene");
-    s.name = fmt::format("{}, {}", s.name, cell_text(others)).substr(0, 60);
+    s.name = shortened(fmt::format("{}, {}", s.name, cell_text(others)));
   }
 }
 
@@ -60,6 +66,10 @@ class Suggestion {
     FigureSpec found = spec_;
     found.sweep = sweep_.dir().string();
     const FigureSource source(found, "");
+    if (source.rows().size() != spec_.scenes.size()) {
+      throw BadJob({{"", fmt::format("{}: settings alone do not tell its pictures apart",
+                                     sweep_.dir().string())}});
+    }
     bool referenced = true;
     for (std::size_t r = 0; r < spec_.scenes.size(); ++r)
       referenced = add_crops(source, r) && referenced;
@@ -80,7 +90,7 @@ class Suggestion {
     FigureScene scene;
     scene.settings = settings_that_vary(plan, picture.cells).shared;
     for (const std::string& pointer : of_methods_) scene.settings.erase(pointer);
-    scene.name = scene_name(plan.cells[picture.cells.front()].job);
+    scene.name = shortened(scene_name(plan.cells[picture.cells.front()].job));
     spec_.scenes.push_back(std::move(scene));
     for (const std::size_t c : picture.cells) {
       FigureMethod method;
@@ -95,14 +105,12 @@ class Suggestion {
     const bool known = std::any_of(spec_.methods.begin(), spec_.methods.end(),
                                    [&](const auto& m) { return m.settings == method.settings; });
     if (known || spec_.methods.size() == most_methods) return;
-    // The value alone where one setting tells the methods apart.
-    if (method.settings.size() == 1) {
-      const OrderedJson value = parse_own(method.settings.begin()->second.text);
-      if (value.is_string()) method.name = value.get<std::string>();
-    }
-    if (method.name.empty()) method.name = cell_text(method.settings);
+    method.name = cell_text(method.settings);
     if (method.name.empty()) method.name = "the job";
-    if (method.name.size() > 60) method.name.resize(60);
+    // The value alone where one setting tells the methods apart, and is no number.
+    const char first = method.settings.size() == 1 ? method.settings.begin()->second.text[0] : ' ';
+    if (first == '"' || first == '{') method.name.erase(0, method.name.find(' ') + 1);
+    method.name = shortened(method.name);
     spec_.methods.push_back(std::move(method));
   }
 
@@ -110,64 +118,16 @@ class Suggestion {
   bool add_crops(const FigureSource& source, std::size_t row) {
     const auto [width, height] = source.rows()[row].resolution;
     const int side = std::max(std::min({width, height, 16}), std::min(width, height) / 4);
-    const std::vector<PixelRect> grid = crop_grid(width, height, side, side);
-    const RowReader read{source, row};
-    const auto reference = read.reference();
-    std::vector<std::vector<double>> errors;  // of each method, by crop
-    std::vector<double> first;
+    TellingCrops crops({width, height}, side);
+    const auto reference = source.reference(row);
     for (std::size_t m = 0; m < spec_.methods.size(); ++m) {
-      const auto picture = read.picture(m);
-      if (!picture) continue;
-      const std::vector<double>& other = reference ? *reference : first;
-      if (other.empty()) {
-        first = *picture;
-        continue;
-      }
-      auto& own = errors.emplace_back();
-      for (const PixelRect& c : grid) {
-        own.push_back(relative_error(cut(*picture, width, c), cut(other, width, c)));
-      }
+      const auto picture = source.picture(row, m);
+      if (picture) crops.add(*picture, reference ? reference->rgb : std::vector<double>());
     }
-    choose(grid, errors, spec_.scenes[row].crops);
+    for (const PixelRect& c : crops.choose(2)) {
+      spec_.scenes[row].crops.push_back({c.x, c.y, c.width, c.height});
+    }
     return reference.has_value();
-  }
-
-  static double relative_error(const std::vector<double>& x, const std::vector<double>& r) {
-    // The median of the pixels' terms would miss fireflies, the mean sees little else: a mean of
-    // roots lies between.
-    double sum = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      sum += std::sqrt(row_of(ErrorMetric::relmse).term(x[i], r[i]));
-    }
-    return sum / static_cast<double>(x.size());
-  }
-
-  /// Two rectangles without common pixels in which the methods' errors differ most.
-  static void choose(const std::vector<PixelRect>& grid,
-                     const std::vector<std::vector<double>>& errors,
-                     std::vector<std::array<int, 4>>& crops) {
-    if (errors.empty()) return;
-    std::vector<std::size_t> order(grid.size());
-    std::vector<double> spread;
-    for (std::size_t i = 0; i < grid.size(); ++i) {
-      order[i] = i;
-      double low = errors[0][i], high = errors[0][i];
-      for (const auto& e : errors) {
-        low = std::min(low, e[i]);
-        high = std::max(high, e[i]);
-      }
-      spread.push_back(errors.size() > 1 ? high - low : high);
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return spread[a] > spread[b]; });
-    for (const std::size_t i : order) {
-      const PixelRect& c = grid[i];
-      const bool apart = std::all_of(crops.begin(), crops.end(), [&](const auto& k) {
-        return std::abs(k[0] - c.x) >= c.width || std::abs(k[1] - c.y) >= c.height;
-      });
-      if (apart) crops.push_back({c.x, c.y, c.width, c.height});
-      if (crops.size() == 2) return;
-    }
   }
 
   SweepFolder sweep_;

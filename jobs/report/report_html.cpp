@@ -48,32 +48,14 @@ OrderedJson to_json(const PictureCrops& crops) {
 /// JSON that is safe in a script element: no "</script>", no "<!--".
 std::string in_script(const OrderedJson& json) {
   std::string text;
-  for (const char c : json_text(json)) {
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
-  }
+  for (const char c : json_text(json)) text += c == '<' ? "\\u003c" : std::string(1, c);
   return text;
 }
 
 std::string in_markup(std::string_view text) {
   std::string safe;
   for (const char c : text) {
-    switch (c) {
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '&':
-        safe += "&amp;";
-        break;
-      default:
-        safe += c;
-    }
+    safe += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
   }
   return safe;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "jobs/run/reference.h"
 #include "jobs/sweep/answers.h"
 
 namespace lacuna {
@@ -15,8 +17,8 @@ struct CellCrop {
   std::string png;
 };
 
-/// The same crop, at the same exposure, of all cells that estimate one picture: the region (at most
-/// 96 x 96 pixels) in which the cells' median squared error is largest.
+/// The same crop, at the same exposure, of all cells that estimate one picture: that of at most
+/// 96 x 96 pixels that tells the cells apart (TellingCrops).
 struct PictureCrops {
   std::size_t picture;  ///< index into Answers::pictures
   int x = 0, y = 0, width = 0, height = 0;
@@ -32,6 +34,15 @@ struct SweepPictures {
   std::vector<std::optional<Estimate>> bias_squared;
   std::vector<std::string> warnings;  ///< pictures that could not be read
 };
+
+/// The last picture of a run, an index into plan().runs: three values for each pixel, top row
+/// first. Throws SceneError, InputUnreadable.
+std::vector<double> read_picture(const SweepFolder& sweep, std::size_t run);
+
+/// The reference of cells of one picture: that of the first finished run with one that still
+/// exists. Throws as read_picture().
+std::optional<Reference> read_reference_of(const SweepFolder& sweep, const Answers& answers,
+                                           std::span<const std::size_t> cells);
 
 /// Reads the pictures of all finished runs, one at a time.
 SweepPictures look_at_pictures(const SweepFolder& sweep, const Answers& answers);

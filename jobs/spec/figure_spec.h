@@ -48,10 +48,11 @@ struct EnumTable<FigureFont> {
   }};
 };
 
-/// A column: the cells of a sweep that have these settings.
+/// A column: the cells of a sweep that have these settings, or these jobs.
 struct FigureMethod {
   std::string name;
   JsonTable<JsonValue> settings;
+  std::vector<std::string> jobs;
   bool operator==(const FigureMethod&) const = default;
 };
 template <class V>
@@ -60,9 +61,14 @@ void describe(V& v, FigureMethod& s) {
   v("settings", s.settings,
     {.doc = "values of swept settings, by pointer, that only the cells of this method have",
      .max = 16});
+  v("jobs", s.jobs,
+    {.doc =
+         "instead of a sweep's cells: jobs, each by its folder, relative to this file, or by its "
+         "id in the data folder; those of one picture differ in the seed alone",
+     .max = 1000});
 }
 
-/// A row: a picture of the sweep.
+/// A row: a picture of the sweep, or of the jobs.
 struct FigureScene {
   std::string name;
   JsonTable<JsonValue> settings;
@@ -74,7 +80,8 @@ template <class V>
 void describe(V& v, FigureScene& s) {
   v("name", s.name, {.doc = "name in the figure", .min = 1, .max = 60, .required = true});
   v("settings", s.settings,
-    {.doc = "values of swept settings, by pointer, that only this picture's cells have",
+    {.doc = "values of swept settings, or of any settings of jobs, by pointer; each picture all of "
+            "whose cells have them is a row",
      .max = 16});
   v("crops", s.crops,
     {.doc = "details: x, y, width and height in pixels, from the upper left; all of one aspect "
@@ -87,9 +94,12 @@ void describe(V& v, FigureScene& s) {
      .unit = "stops"});
 }
 
+/// Size limit of a figure's file, in bytes.
+inline constexpr std::size_t max_figure_bytes = 1 << 20;
+
 /// The file of a figure.
 struct FigureSpec {
-  std::string sweep;
+  std::optional<std::string> sweep;
   std::vector<FigurePanel> show{FigurePanel::pictures, FigurePanel::convergence,
                                 FigurePanel::table};
   std::vector<FigureScene> scenes;
@@ -107,7 +117,9 @@ struct FigureSpec {
 template <class V>
 void describe(V& v, FigureSpec& s) {
   v("sweep", s.sweep,
-    {.doc = "the folder of the sweep, relative to this file", .min = 1, .required = true});
+    {.doc = "the folder of the sweep, relative to this file, or its id in the data folder; none: "
+            "the methods name jobs",
+     .min = 1});
   v("show", s.show, {.doc = "the parts, from top to bottom", .min = 1, .max = 3});
   v("scenes", s.scenes, {.doc = "the rows", .min = 1, .max = 12, .required = true});
   v("methods", s.methods, {.doc = "the columns", .min = 1, .max = 8, .required = true});

@@ -62,21 +62,23 @@ bool check_size(const JsonCursor& found, const Limits& size) {
   return good;
 }
 
-std::string any_value(const JsonCursor& found) {
+std::string any_value(const JsonCursor& found) { return any_value(found.value()); }
+
+std::string any_value(const Json& value) {
   // 4 and 4.0 are the same number and get the same text.
-  const auto plain = [](const auto& self, const Json& value) -> Json {
-    if (value.is_number_float()) {
-      const double x = value.get<double>();
+  const auto plain = [](const auto& self, const Json& any) -> Json {
+    if (any.is_number_float()) {
+      const double x = any.get<double>();
       if (x == std::trunc(x) && std::abs(x) <= max_exact_integer) {
         return static_cast<std::int64_t>(x);
       }
     }
-    if (!value.is_structured()) return value;
-    Json all = value;
+    if (!any.is_structured()) return any;
+    Json all = any;
     for (Json& part : all) part = self(self, part);
     return all;
   };
-  return json_text(plain(plain, found.value()));
+  return json_text(plain(plain, value));
 }
 
 void check_retired(const JsonCursor& found, const RetiredKey& key) {

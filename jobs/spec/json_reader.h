@@ -42,6 +42,7 @@ std::optional<std::string> read_string(const JsonCursor& found, const Limits& le
 bool check_size(const JsonCursor& found, const Limits& size);
 /// Any value, as one line of text.
 std::string any_value(const JsonCursor& found);
+std::string any_value(const Json& value);
 /// Adds a problem for any value but the one allowed for a retired key.
 void check_retired(const JsonCursor& found, const RetiredKey& key);
 void check_keys(const JsonCursor& found, const std::vector<std::string_view>& known);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/storage/atomic_file.h"
 #include "base/storage/passing_error.h"
 #include "jobs/spec/described_json.h"
@@ -66,6 +68,12 @@ SweepFolder SweepFolder::of_service(const DataRoot& data, const std::string& id,
   return {dir, std::move(spec), std::move(plan), true};
 }
 
+SweepFolder SweepFolder::of_jobs(SweepPlan plan) {
+  SweepSpec spec;
+  for (const SweepRun& run : plan.runs) spec.seeds = std::max(spec.seeds, run.replicate + 1);
+  return {"", std::move(spec), std::move(plan), false};
+}
+
 SweepFolder SweepFolder::preview(const fs::path& dir, const SweepSpec& spec) {
   SweepFolder folder(folder_path(dir), spec);
   const bool occupied =
@@ -110,7 +118,7 @@ std::string SweepFolder::job_id(const SweepRun& run) const {
 fs::path SweepFolder::runs_dir() const { return dir_ / runs_folder; }
 
 JobFolder SweepFolder::folder(const SweepRun& run) const {
-  if (!served_) return JobFolder(runs_dir() / run.name);
+  if (!served_) return JobFolder(runs_dir() / run.name);  // an absolute name stands for itself
   return JobFolder(dir_.parent_path().parent_path() / "jobs" / job_id(run));
 }
 

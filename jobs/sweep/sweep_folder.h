@@ -24,6 +24,9 @@ class SweepFolder {
   /// Throws std::system_error.
   static SweepFolder of_service(const DataRoot& data, const std::string& id, SweepSpec spec,
                                 SweepPlan plan);
+  /// Jobs anywhere, as if they were the runs of a sweep: the runs of `plan` have the absolute paths
+  /// of their folders as names.
+  static SweepFolder of_jobs(SweepPlan plan);
   /// Opens the folder of a sweep. Throws BadJob, std::system_error.
   explicit SweepFolder(const std::filesystem::path& dir);
 
@@ -65,5 +68,7 @@ void write_sweep_state(const std::filesystem::path& dir, const SweepState& state
 /// the run's name, cell, baseline's cell (if any), replicate, seed, state and settings before the
 /// columns of curve.csv.
 std::string sweep_table(const SweepFolder& sweep);
+/// A field of a CSV file.
+std::string csv_field(const std::string& text);
 
 }  // namespace lacuna

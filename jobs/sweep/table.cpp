@@ -11,20 +11,20 @@
 #include "jobs/sweep/sweep_folder.h"
 
 namespace lacuna {
-namespace {
 
-/// A field of a CSV file.
-std::string field(const std::string& text) {
+std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + '"';
 }
 
+namespace {
+
 /// A setting as a field: a string without its quotes.
 std::string field(const JsonValue& value) {
   const OrderedJson v = parse_own(value.text);
-  return field(v.is_string() ? v.get<std::string>() : value.text);
+  return csv_field(v.is_string() ? v.get<std::string>() : value.text);
 }
 
 /// Flattens the values in an object, at any depth, with keys joined by '.'.
@@ -85,15 +85,15 @@ std::string sweep_table(const SweepFolder& sweep) {
     const JsonTable<std::string> own = flat_settings(cell);
     for (const std::string& name : flat) {
       const auto found = own.find(name);
-      start += ',' + (found != own.end() ? field(found->second) : "");
+      start += ',' + (found != own.end() ? csv_field(found->second) : "");
     }
     std::istringstream curve(read_file(file, max_curve_bytes));
     std::string line;
     std::getline(curve, line);
     if (header.empty()) {
       header = "run,cell,baseline,replicate,seed,state";
-      for (const auto& [pointer, value] : cell.settings) header += ',' + field(pointer);
-      for (const std::string& name : flat) header += ',' + field(name);
+      for (const auto& [pointer, value] : cell.settings) header += ',' + csv_field(pointer);
+      for (const std::string& name : flat) header += ',' + csv_field(name);
       header += ',' + line + '\n';
     }
     while (std::getline(curve, line))

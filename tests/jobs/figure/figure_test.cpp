@@ -150,6 +150,46 @@ TEST_F(Figures, ShowTheNumbersOfTheReport) {
   EXPECT_NE(csv.find("Door,Path tracing,seconds_to_error,"), std::string::npos);
 }
 
+TEST_F(Figures, OfJobFoldersShowTheSameAsOfTheirSweep) {
+  const FigureSource of_sweep = source();
+  const auto jobs = [](int cell) {
+    return fmt::format(R"("jobs": ["a.sweep/runs/{0:04}-1", "a.sweep/runs/{0:04}-2"])", cell);
+  };
+  std::string spec = spec_json;
+  const auto replace = [&spec](const std::string& from, const std::string& to) {
+    spec.replace(spec.find(from), from.size(), to);
+  };
+  replace(R"("sweep": "a.sweep", )", "");
+  replace(R"("settings": {"/integrator/type": "path"})", jobs(1));
+  replace(R"("settings": {"/integrator/type": "bdpt"})", jobs(3));
+  const FigureSource of_jobs = source(spec);
+  ASSERT_EQ(of_jobs.rows().size(), 1u);
+  for (std::size_t m = 0; m < 2; ++m) {
+    EXPECT_EQ(of_jobs.cell(0, m)->done.size(), 2u) << "seeds are runs of one cell";
+    for (std::size_t k = 0; k < 2; ++k) {
+      ASSERT_TRUE(of_jobs.error(0, m, k)->error.has_value());
+      EXPECT_EQ(of_jobs.error(0, m, k)->error->value, of_sweep.error(0, m, k)->error->value);
+    }
+    EXPECT_EQ(*of_jobs.picture(0, m), *of_sweep.picture(0, m));
+  }
+  EXPECT_EQ(of_jobs.reference(0)->rgb, of_sweep.reference(0)->rgb);
+  const Drawing a = draw_figure(of_jobs), b = draw_figure(of_sweep);
+  EXPECT_EQ(marks<ImageMark>(a).size(), marks<ImageMark>(b).size());
+  EXPECT_EQ(a.height, b.height - 9.5) << "without the baseline's row";
+
+  // Jobs of two pictures under one scene are two rows.
+  replace(R"("settings": {"/scene": "door.glb"}, "crops": [[0, 0, 16, 12], [40, 30, 16, 12]])",
+          R"("settings": {"/resolution": [64.0, 48]})");
+  replace("0003-1", "0002-1");
+  replace("0003-2", "0002-2");
+  const FigureSource two = source(spec);
+  ASSERT_EQ(two.rows().size(), 2u);
+  EXPECT_TRUE(two.spec().scenes[1].name.starts_with("Door, ")) << two.spec().scenes[1].name;
+  EXPECT_EQ(two.cell(0, 1), nullptr);
+  EXPECT_EQ(two.cell(1, 0), nullptr);
+  EXPECT_NE(two.cell(1, 1), nullptr);
+}
+
 TEST_F(Figures, AreDrawnAsTheirFileSays) {
   const Drawing d = draw_figure(source());
   EXPECT_NEAR(d.width, 178 / 25.4 * 72, 1e-9);
@@ -264,6 +304,48 @@ TEST_F(Figures, WithoutWhatTheyNameAreRefused) {
   expect_problem(R"("error_map")", R"("eror_map")", "/eror_map", "error_map");
 }
 
+TEST_F(Figures, OfJobsThatAreNotThereAreRefused) {
+  const char* of_jobs =
+      R"({"scenes": [{"name": "a"}], "methods": [{"name": "b", "jobs": [JOBS]}]})";
+  const auto problem = [&](const std::string& jobs) {
+    std::string spec = of_jobs;
+    spec.replace(spec.find("JOBS"), 4, jobs);
+    try {
+      source(spec);
+    } catch (const BadJob& bad) {
+      return std::string(bad.what());
+    }
+    return std::string("no problem");
+  };
+  EXPECT_NE(
+      problem(R"("a.sweep/runs/0001-1", "nothing")").find("/methods/0/jobs/1: found \"nothing\""),
+      std::string::npos);
+  EXPECT_NE(problem("").find("/methods/0/jobs: found none"), std::string::npos);
+  EXPECT_NE(problem(R"("20200101-000000-nobody")").find("the id of a job"), std::string::npos);
+  // Two methods under one name.
+  EXPECT_NE(
+      problem(R"("a.sweep/runs/0001-1", "a.sweep/runs/0003-1")").find("2 cells of scene \"a\""),
+      std::string::npos);
+  // Not rendered yet.
+  JobSpec waiting;
+  waiting.scene = "a.glb";
+  JobFolder::create(temp.path() / "waiting", waiting);
+  EXPECT_NE(problem(R"("waiting")").find("no run of this picture is done"), std::string::npos);
+  expect_problem(R"("BDPT", "settings": {"/integrator/type": "bdpt"})", R"("BDPT", "jobs": ["a"])",
+                 "/methods/1/jobs", "beside \"sweep\"");
+}
+
+TEST_F(Figures, HaveNamesOfWholeCharacters) {
+  std::string name, spec = sweep_json;
+  for (int i = 0; i < 70; ++i) name += "ä";
+  spec.replace(spec.find("door"), 4, name);
+  const SweepFolder sweep = SweepFolder::create(temp.path() / "b.sweep", parse_sweep(spec));
+  for (const SweepRun& run : sweep.plan().runs) finish(sweep, run, temp.path() / "r.exr");
+  const FigureSpec suggested = suggest_figure(temp.path() / "b.sweep", "b.sweep");
+  EXPECT_EQ(suggested.scenes[0].name, name.substr(0, 120)) << "60 characters of two bytes";
+  EXPECT_EQ(source(write_document(suggested)).spec().scenes[0].name, name.substr(0, 120));
+}
+
 TEST(FigurePictures, AreJpegsUnlessTheyAreToBeExact) {
   Drawing d{100, 100, "", "Linux Biolinum O", 95, {}};
   CodeImage noise{200, 200, {}};
@@ -288,6 +370,9 @@ TEST(FigureNumbers, HaveThreeDigits) {
   EXPECT_EQ(figure_number(1.5e-7), "1.50 · 10⁻⁷");
   EXPECT_EQ(figure_number(9.999e6), "1.00 · 10⁷");
   EXPECT_EQ(latex_text("50 % of 2_3 · 10⁻⁷"), "50 \\% of 2\\_3$\\cdot$10$^{-}$$^7$");
+  EXPECT_EQ(latex_text("> 8 s, {a}^2 ~ \\ −1"),
+            "$>$ 8 s, \\{a\\}\\textasciicircum{}2 \\textasciitilde{} "
+            "\\textbackslash{} $-$1");
 }
 
 TEST(LogAxis, HasTicksThatDoNotTouch) {

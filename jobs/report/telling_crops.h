@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "renderer/film/crop.h"
+
+namespace lacuna {
+
+/// Finds the parts of a picture that tell methods apart, one method's picture after the other.
+class TellingCrops {
+ public:
+  /// Of crop_grid() with this side, in pixels.
+  TellingCrops(const std::array<int, 2>& resolution, int side);
+
+  /// Adds a method's picture, of three values for each pixel. `reference`: likewise, the same for
+  /// all; empty: the methods are compared with the first.
+  void add(const std::vector<double>& picture, const std::vector<double>& reference);
+
+  /// At most `count` squares without common pixels: those in which the methods' relative errors
+  /// differ most, or in which that of a single method is largest. In the middle if no errors are
+  /// known.
+  std::vector<PixelRect> choose(std::size_t count) const;
+
+ private:
+  std::array<int, 2> resolution_;
+  std::vector<PixelRect> grid_;
+  std::vector<std::vector<double>> errors_;  // of each method, by square
+  std::vector<double> first_;                // the first picture, without a reference
+};
+
+}  // namespace lacuna
