@@ -82,15 +82,20 @@ std::chrono::milliseconds grace(const ServiceSettings& settings) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * settings.grace_seconds));
 }
 
+ExecutorSettings executor_settings(const ServiceSettings& settings, const DataRoot& data,
+                                   const ScenesRoots& scenes) {
+  return {.renderer = renderer(settings),
+          .directory = data.dir,
+          .data = data.dir,
+          .cache = data.cache(),
+          .scenes = scenes.roots(),
+          .grace = grace(settings),
+          .limits = settings.limits};
+}
+
 std::unique_ptr<Executor> make_executor(const ServiceSettings& settings, const DataRoot& data,
                                         const ScenesRoots& scenes) {
-  ExecutorSettings common{.renderer = renderer(settings),
-                          .directory = data.dir,
-                          .data = data.dir,
-                          .cache = data.cache(),
-                          .scenes = scenes.roots(),
-                          .grace = grace(settings),
-                          .limits = settings.limits};
+  ExecutorSettings common = executor_settings(settings, data, scenes);
   if (settings.executor == ExecutorKind::local) {
     return std::make_unique<LocalExecutor>(std::move(common));
   }
@@ -202,7 +207,8 @@ struct Service::Parts {
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
         routes({settings, data, scenes, *store, disk, queue, http_metrics, uploads.get()},
-               {*store, queue, folders, keeper}, files, access),
+               {*store, queue, folders, keeper}, executor_settings(settings, data, scenes), files,
+               access),
         http(http_settings(settings), routes.router(), http_metrics,
              [this](const Request& request) { access.admit(request); }) {
     http.bind();
@@ -243,6 +249,7 @@ void Service::start() {
 
 void Service::stop() {
   if (parts_->uploads) parts_->uploads->stop();
+  parts_->routes.stop();
   parts_->http.stop();
   parts_->keeper.stop();
   parts_->queue.stop();

@@ -78,7 +78,7 @@ void trace(const TraceOptions& o) {
     const std::size_t shown = std::min(o.brightest, found.paths.size());
     write_overlay(o.glb, scene, path_overlay(std::span(found.paths).first(shown), scene.bounds()));
   }
-  const OrderedJson json = pixel_paths_json(found, scene.origin, o.brightest);
+  const OrderedJson json = pixel_paths_json(found, scene, o.brightest);
   if (o.json) {
     fmt::print("{}", document_text(json));
   } else {

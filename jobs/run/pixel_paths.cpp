@@ -39,9 +39,11 @@ void check(const JobSpec& spec, const std::array<int, 2>& pixel, std::uint64_t s
   if (!problems.empty()) throw BadJob(std::move(problems));
 }
 
+OrderedJson vector_json(const V3d& x) { return {x.x, x.y, x.z}; }
+
 OrderedJson vertex_json(const TracedVertex& v, const V3d& origin) {
   const V3d x = V3d(v.x) + (v.infinite ? V3d(0) : origin);
-  return {{v.infinite ? "direction" : "position", {x.x, x.y, x.z}},
+  return {{v.infinite ? "direction" : "position", vector_json(x)},
           {"from", v.from_light ? "light" : "eye"},
           {"density", v.density}};
 }
@@ -97,26 +99,32 @@ PixelPaths trace_pixel(const JobSpec& spec, const Prepared& prepared,
   return found;
 }
 
-OrderedJson pixel_paths_json(const PixelPaths& found, const V3d& origin, std::size_t brightest) {
+OrderedJson pixel_paths_json(const PixelPaths& found, const SceneData& scene,
+                             std::size_t brightest) {
+  const Bounds box = scene.bounds();
   double all = 0;
   for (const TracedPath& p : found.paths) all += double(luminance(p.value));
   OrderedJson list = OrderedJson::array();
   for (const TracedPath& p : found.paths) {
     if (list.size() == brightest) break;
     OrderedJson vertices = OrderedJson::array();
-    for (const TracedVertex& v : p.vertices) vertices.push_back(vertex_json(v, origin));
+    for (const TracedVertex& v : p.vertices) vertices.push_back(vertex_json(v, scene.origin));
     list.push_back({{"iteration", p.iteration},
                     {"s", p.s},
                     {"t", p.t},
                     {"letters", p.letters},
-                    {"value", {p.value.x, p.value.y, p.value.z}},
+                    {"value", vector_json(V3d(p.value))},
                     {"share", all > 0 ? double(luminance(p.value)) / all : 0.0},
                     {"weight", p.weight},
                     {"vertices", std::move(vertices)}});
   }
-  return {{"pixel", found.pixel},        {"samples", found.samples},
-          {"seed", found.seed},          {"mean", {found.mean.x, found.mean.y, found.mean.z}},
-          {"count", found.paths.size()}, {"paths", std::move(list)}};
+  return {{"pixel", found.pixel},
+          {"samples", found.samples},
+          {"seed", found.seed},
+          {"mean", vector_json(found.mean)},
+          {"bounds", {vector_json(box.low + scene.origin), vector_json(box.high + scene.origin)}},
+          {"count", found.paths.size()},
+          {"paths", std::move(list)}};
 }
 
 }  // namespace lacuna

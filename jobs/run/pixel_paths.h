@@ -32,8 +32,8 @@ PixelPaths trace_pixel(const JobSpec& spec, const Prepared& prepared,
                        const std::array<int, 2>& pixel, std::uint64_t samples,
                        const std::function<bool()>& stop);
 
-/// As one JSON object; `origin`: of the scene, for positions in the coordinates of its file.
-/// `brightest`: number of paths.
-OrderedJson pixel_paths_json(const PixelPaths& found, const V3d& origin, std::size_t brightest);
+/// As one JSON object, in the coordinates of the scene's file. `brightest`: number of paths.
+OrderedJson pixel_paths_json(const PixelPaths& found, const SceneData& scene,
+                             std::size_t brightest);
 
 }  // namespace lacuna

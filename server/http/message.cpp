@@ -14,7 +14,7 @@ namespace lacuna {
 
 const char* status_title(int status) {
   using Pair = std::pair<int, const char*>;
-  constexpr std::array<Pair, 24> titles{{
+  constexpr std::array<Pair, 25> titles{{
       {200, "OK"},
       {201, "Created"},
       {202, "Accepted"},
@@ -38,6 +38,7 @@ const char* status_title(int status) {
       {500, "Internal error"},
       {501, "Not implemented"},
       {503, "Service unavailable"},
+      {504, "Out of time"},
       {507, "Insufficient storage"},
   }};
   for (const auto& [number, text] : titles) {

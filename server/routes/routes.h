@@ -6,6 +6,7 @@
 #include "server/routes/job_routes.h"
 #include "server/routes/service_routes.h"
 #include "server/routes/sweep_routes.h"
+#include "server/routes/tool_routes.h"
 
 namespace lacuna {
 
@@ -20,15 +21,18 @@ struct ServiceWork {
 /// All routes of the service. All references must outlive it.
 class Routes {
  public:
-  Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page,
-         Access& access);
+  Routes(const ServiceFacts& facts, const ServiceWork& work, ExecutorSettings tools,
+         const StaticFiles& page, Access& access);
 
   /// For HttpServer.
   const Router& router() const { return router_; }
+  /// Ends the child processes of requests.
+  void stop() const { tools_.stop(); }
 
  private:
   JobRoutes jobs_;
   SweepRoutes sweeps_;
+  ToolRoutes tools_;
   ServiceRoutes service_;
   Router router_;
 };
