@@ -213,7 +213,7 @@ function frontList(front, names, charge) {
 }
 
 /// The answers with their controls. `query` (URLSearchParams) and the URL store every choice. `pictures(picture, cells,
-/// names)` returns an element with the chosen cells' pictures, or null. `show(answers)` redraws.
+/// names, all)` returns an element with the pictures of the chosen cells out of `all`, or null. `show(answers)` redraws.
 export function answersView(query, pictures) {
   const [above, below, crops] = [h("div"), h("div"), h("section")];
   const figure = figureBox("No run is done yet.");
@@ -251,7 +251,7 @@ export function answersView(query, pictures) {
       answersTable({ answers, picture, cells, which: which.key, query, chosen: new Set(chosen), choose }),
       note("Means are geometric, over the seeds; in parentheses 95 % intervals (Student's t of the logarithms, "
         + "Welch's for ratios). A ratio whose interval contains 1 is not significant."));
-    replace(crops, pictures(number, chosen.map((n) => answers.cells[n - 1]), names));
+    replace(crops, pictures(number, chosen.map((n) => answers.cells[n - 1]), names, cells));
   }
 
   return {

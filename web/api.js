@@ -87,6 +87,11 @@ export async function getPart(id, name, offset, bytes, signal) {
 
 /// `verb`: cancel, retry, or extend with the JSON of a body.
 export const tell = (id, verb, body) => send("POST", `${jobPath(id)}/${verb}`, body);
+/// The brightest paths of a pixel [x, y] in the first `samples` iterations: {samples, seed, bounds, count, paths}.
+export const getPaths = async (id, [x, y], samples) =>
+  (await send("POST", `${jobPath(id)}/trace?x=${x}&y=${y}&samples=${samples}`)).json();
+/// The figure (docs/figures.md) of `spec`, the text of its file, as a blob; `format`: pdf, svg or png.
+export const drawFigure = async (spec, format) => (await send("POST", `/api/figures?format=${format}`, spec)).blob();
 /// `values`: {priority, held}, either or both.
 export const change = (id, values) => send("PATCH", jobPath(id), JSON.stringify(values));
 export const remove = (id) => send("DELETE", jobPath(id));

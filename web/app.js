@@ -17,6 +17,7 @@ const keys = [
   ["e, E", "exposure half a stop up, down"], ["[, ]", "previous, next layer"],
   ["+, −, wheel", "zoom (wheel: once the picture has the focus)"], ["arrows, drag", "move the picture"],
   ["0 or f, o", "fit to the window; one to one"], ["1 … 9", "show the picture with this number"],
+  ["p", "show the brightest paths of the pixel under the pointer"],
   [", .", "move the divider of two pictures; make the crop smaller, larger"],
   ["arrows, drag", "crops: move the crop; choose another"],
 ];

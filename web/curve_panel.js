@@ -73,7 +73,7 @@ export function curvePanel(query, drawn = () => {}) {
     switches.hidden = metric === undefined;
     update(switches,
       choice("Error", offered, metric?.key, choose("y")), choice("against", axes, axis.key, choose("x")),
-      h("span.tools", alone(), figure.saves("", () => `lacuna-${metric.key}`)));
+      h("span.tools", alone(), figure.saveButton("", () => `lacuna-${metric.key}`)));
     figure.draw({ axis, metric, curves: series.map(({ name, rows }, index) => (
       { name, index, points: metric ? points(rows, axis.key, metric.key) : [] })) });
     drawn(axis, metric);

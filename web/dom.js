@@ -125,6 +125,13 @@ export const copyButton = (text) => small("Copy", async ({ target }) => {
   setTimeout(() => { target.textContent = "Copy"; }, 2000);
 });
 
+/// Saves a blob as a file.
+export function save(blob, name) {
+  const href = URL.createObjectURL(blob);
+  h("a", { href, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(href), 10_000);
+}
+
 export const problem = (text) => h("p.problem", { role: "alert" }, text);
 export const warning = (text) => h("p.warning", text);
 export const note = (...content) => h("p.note", content);

@@ -1,11 +1,10 @@
-// Figures: curves over log axes as SVG in the page's colours, on the page and as files.
+// Figures: curves over log axes as SVG in the page's colours, on the page and as files (of papers: paper_figure.js).
 import { slopeLine, slopeName } from "./curve.js";
-import { h, note, small } from "./dom.js";
+import { h, note, save, small } from "./dom.js";
 import { number } from "./format.js";
 
 const size = { left: 68, right: 14, top: 14, plot: 360, below: 52, line: 18, column: 320, letter: 6.6 };
 const narrowest = 280;
-const enlarged = 3;  // pixels of a saved PNG for one of the SVG
 export const colours = 8;
 /// The i-th curve's colour, named in style.css; eight colours repeat.
 export const curveColour = (i) => `var(--curve-${i % colours})`;
@@ -169,8 +168,8 @@ export function figureSvg({ curves, front = [], axis, metric }, width = 720) {
   ...names.parts);
 }
 
-/// A container for a figure, as wide as available. `draw(what)` shows figureSvg() of it, or `empty`. `saves(what,
-/// name)` returns buttons that save it: `what` is in their text, `name()` is the file name.
+/// A container for a figure, as wide as available. `draw(what)` shows figureSvg() of it, or `empty`. `saveButton(what,
+/// name)` is a button that saves it: `what` is in its text, `name()` is the file name.
 export function figureBox(empty) {
   const box = h("div.plot");
   let shown = null;
@@ -194,28 +193,16 @@ export function figureBox(empty) {
       box.dataset.points = shown.curves.flatMap((c) => c.points).length;
       redraw();
     },
-    saves: (what, name) => ["SVG", "PNG"].map((kind) => small(`Save ${what}as ${kind}`,
-      () => saveFigure(figureSvg(shown), `${name()}.${kind.toLowerCase()}`))),
+    saveButton: (what, name) => small(`Save ${what}as SVG`, () => saveFigure(figureSvg(shown), `${name()}.svg`)),
   };
 }
 
-async function pngOf(source, { width, height }) {
-  const image = h("img", { src: source, width, height });
-  await image.decode();
-  const canvas = h("canvas", { width: enlarged * width, height: enlarged * height });
-  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
-  return new Promise((resolve) => { canvas.toBlob(resolve, "image/png"); });
-}
-
-/// Saves an SVG element, in the page's present colours, as `name`, whose extension, svg or png, selects the format.
-async function saveFigure(figure, name) {
+/// Saves an SVG element, in the page's present colours.
+function saveFigure(figure, name) {
   const page = getComputedStyle(document.documentElement);
   const now = matchMedia("(prefers-color-scheme: dark)").matches ? 1 : 0;
   // A name's value is light-dark(#..., #...).
   const source = new XMLSerializer().serializeToString(figure)
     .replace(/var\((--[\w-]+)\)/g, (_, colour) => page.getPropertyValue(colour).match(/#\w+/g)[now]);
-  const sources = [URL.createObjectURL(new Blob([source], { type: "image/svg+xml" }))];
-  if (name.endsWith("png")) sources.push(URL.createObjectURL(await pngOf(sources[0], figure.viewBox.baseVal)));
-  h("a", { href: sources.at(-1), download: name }).click();
-  setTimeout(() => sources.forEach(URL.revokeObjectURL), 10_000);
+  save(new Blob([source], { type: "image/svg+xml" }), name);
 }

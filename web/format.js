@@ -79,6 +79,9 @@ export function integratorName(integrator) {
 /// The title of a job: its label, else its scene.
 export const jobTitle = (job) => job.label || job.scene;
 
+/// A name in a figure's file, which allows 60 characters.
+export const figureName = (text) => [...text].slice(0, 60).join("");
+
 export const firstJob = (scenes) => ({
   scene: scenes[0] ?? "SCENE.glb", integrator: { type: "path" }, budget: { seconds: 30 }, reference: "auto",
 });

@@ -1,6 +1,6 @@
 // Jobs' pictures: layers of equal size together in the viewer, else their image.png with the reason.
 import { fileUrl, getFile, getPart } from "./api.js";
-import { h, update } from "./dom.js";
+import { button, h, update } from "./dom.js";
 import { currentError } from "./format.js";
 import { extent } from "./pixels.js";
 import { viewer } from "./viewer.js";
@@ -80,6 +80,9 @@ export function jobPictures(query, signal, describe) {
   return {
     element: h("div", place, apart),
     open: (key) => numbers.open(key),
+    /// The button for a figure of a paper; `spec(screen)` gives its file, from what the viewer shows.
+    figureButton: (spec) => button("Figure …", async () =>
+      (await import("./paper_figure.js")).showFigure(spec(numbers?.screen() ?? {}))),
     async show(jobs) {
       const drawable = jobs.some(({ files }) => files.some((f) => f.name === "layers.json"));
       if (drawable && numbers === undefined) numbers = viewer(query, signal);

@@ -88,7 +88,7 @@ export function scalingPanel(query) {
     const x = pick(offered.x, query.get("sx")) ?? offered.x[0];
     const y = pick(offered.y, query.get("sy")) ?? pick(offered.y, "seconds render_cpu") ?? offered.y[0];
     update(switches, choice("Number", offered.y.map(({ key, label }) => ({ key, label })), y.key, choose("sy")),
-      choice("over", offered.x, x.key, choose("sx")), h("span.tools", figure.saves("scaling ", () => "lacuna-scaling")));
+      choice("over", offered.x, x.key, choose("sx")), h("span.tools", figure.saveButton("scaling ", () => "lacuna-scaling")));
     figure.draw({ curves: scalingCurves(jobs, x, y), axis: x, metric: y });
   }
   return { element, show };

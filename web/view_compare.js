@@ -2,7 +2,7 @@
 import { commonError, commonInstants, errorAt, points, reaches } from "./curve.js";
 import { curvePanel, followJobs, idsOf } from "./curve_panel.js";
 import { append, h, note, problem, replace, table, update, warning } from "./dom.js";
-import { number, significant, thin } from "./format.js";
+import { figureName, number, significant, thin } from "./format.js";
 import { jobPictures } from "./job_pictures.js";
 import { differences, doubtful, scalingPanel } from "./scaling.js";
 import { noViewer } from "./viewer.js";
@@ -32,6 +32,12 @@ function equalTimes(series, axis, metric) {
   ];
 }
 
+/// The file of a figure (docs/figures.md) with a column for each job; `screen`: see viewer().
+const figureOf = (jobs, metric, { scene, ...screen }) => ({
+  scenes: [{ name: figureName(jobs[0].job.scene.replace(/\.\w+$/, "")), ...scene }],
+  methods: jobs.map(({ id, name }) => ({ name: figureName(name), jobs: [id] })),
+  metrics: metric ? [metric.key] : [], ...screen });
+
 /// The caption of a picture that the viewer cannot show.
 export const describe = ({ id, name, layers, drawable }) => ({ alt: `Picture of ${name}`, caption: [
   h("a", { href: `#/job/${id}` }, name), !drawable ? noViewer
@@ -48,8 +54,11 @@ export async function show(main, { query, signal }) {
   }
   const [notes, times, settings] = [h("div.notes"), h("section"), h("section")];
   const pictures = jobPictures(query, signal, describe);
-  const panel = curvePanel(query, (...shown) =>
-    update(times, h("h2", "Error at equal time"), equalTimes(compared, ...shown)));
+  let metric;
+  const panel = curvePanel(query, (...shown) => {
+    [, metric] = shown;
+    update(times, h("h2", "Error at equal time"), equalTimes(compared, ...shown));
+  });
   const scaling = scalingPanel(query);
   let compared = [];
 
@@ -67,6 +76,7 @@ export async function show(main, { query, signal }) {
   }
 
   append(main, notes, panel.element, times,
-    h("section", h("h2", "Pictures"), pictures.element), scaling.element, settings);
+    h("section", h("h2", "Pictures"), pictures.figureButton((screen) => figureOf(compared, metric, screen)),
+      pictures.element), scaling.element, settings);
   await followJobs(ids, draw, signal);
 }

@@ -3,7 +3,7 @@ import { cancelSweep, curlLine, getAnswers, getJob, getSweep, getSweeps, poll, r
 import { answersView, summary } from "./answers.js";
 import { action, append, ask, button, copyButton, emptyPlace, h, note, problem, replace, table, update }
   from "./dom.js";
-import { badge, isTerminal, number, prettyJob, progressBar, when, withoutNulls } from "./format.js";
+import { badge, figureName, isTerminal, number, prettyJob, progressBar, when, withoutNulls } from "./format.js";
 import { jobPictures } from "./job_pictures.js";
 import { describe } from "./view_compare.js";
 
@@ -39,8 +39,16 @@ async function showAll(main, { signal }) {
   }, listMs, signal);
 }
 
-/// The pictures of the first finished run of each chosen cell, in the viewer of jobs.
-function cellPictures(query, signal, failed) {
+/// The file of a figure (docs/figures.md) of some `cells` of a picture, whose cells are `all`; `screen`: see viewer().
+function figureOf(sweep, cells, all, names, { scene, ...screen }) {
+  const shared = Object.entries(all[0].settings).filter(([key, value]) =>
+    all.every(({ settings }) => JSON.stringify(settings[key]) === JSON.stringify(value)));
+  return { sweep, scenes: [{ name: "Scene", settings: Object.fromEntries(shared), ...scene }],
+    methods: cells.map(({ cell, settings }) => ({ name: figureName(names.get(cell)), settings })), ...screen };
+}
+
+/// The pictures of the first finished run of each chosen cell of a sweep, in the viewer of jobs.
+function cellPictures(sweep, query, signal, failed) {
   const pictures = jobPictures(query, signal, describe);
   const read = new Map();
   const empty = note("No run of these cells is done yet.");
@@ -50,11 +58,12 @@ function cellPictures(query, signal, failed) {
     }
     await pictures.show(runs.map(({ id, name }) => ({ ...read.get(id), name })));
   }
-  return (number, cells, names) => {
+  return (number, cells, names, all) => {
     const runs = cells.map((c) => ({ name: names.get(c.cell), id: c.runs.find((r) => r.state === "done")?.job }))
       .filter(({ id }) => id);
     load(runs).catch((error) => { if (!signal.aborted) failed(error.message); });
-    return [h("h2", "Pictures of the shown cells"), runs.length > 0 ? pictures.element : empty];
+    return [h("h2", "Pictures of the shown cells"), runs.length === 0 ? empty
+      : [pictures.figureButton((screen) => figureOf(sweep, cells, all, names, screen)), pictures.element]];
   };
 }
 
@@ -83,7 +92,7 @@ async function showOne(main, { params: { id }, query, signal }) {
   const remove = () => button("Delete …", action(() => ask("Delete this sweep?",
     "This also deletes all its jobs, with their pictures, curves and reports.", "Delete for good",
     () => removeSweep(id)), () => { location.hash = "#/sweeps"; }, say), danger);
-  const view = answersView(query, cellPictures(query, signal, say));
+  const view = answersView(query, cellPictures(id, query, signal, say));
   append(main, title, h("p.id", id), refusal, about, view.element, runs, source);
 
   let took = 0;

@@ -146,16 +146,18 @@ function drawAll(own) {
     + pixelText(imageAt(u), content.details, Math.floor(at.x), Math.floor(at.y)));
 
   const stops = { colour: state.ev ?? look.ev, direction: null, false: state.stops }[look.look];
-  update(own.tools, viewerTools(actions, { options: own.options, chosen: state.show, zoom: zoom * ratio, stops }));
+  const { options, tracing } = own;
+  update(own.tools, viewerTools(actions, { options, chosen: state.show, zoom: zoom * ratio, stops, tracing }));
   update(own.modes, sources.length > 1 && modeTools(actions.change, state, sources.map((s) => s.name)));
+  seen.frame.classList.toggle("tracing", own.tracing);
   seen.frame.classList.toggle("zoomed", state.zoom !== null || state.mode === "crops");
   seen.frame.dataset.shown = state.show || "picture";
   seen.frame.dataset.zoom = Number(zoom.toPrecision(4));
 }
 
 /// A viewer whose state is in `query` (URLSearchParams) and the URL; null without WebGL 2. `show(sources)` takes
-/// [{name, layers, seconds, error}] (see openLayers; render time, error as text) of one size, shown alike; `open(key)`
-/// selects a layer of them and scrolls to the viewer.
+/// [{id, name, layers, seconds, error}] (see openLayers; render time, error as text) of one size, shown alike;
+/// `open(key)` selects a layer of them and scrolls to the viewer.
 export function viewer(query, signal) {
   const seen = stage();
   const state = Object.fromEntries(Object.entries(fields).map(([key, [read]]) => [key, read(query.get(key))]));
@@ -179,9 +181,11 @@ export function viewer(query, signal) {
   }
 
   const own = {
-    state, seen, redraw, sources: [], options: [], content: null, pointer: null,
+    state, seen, redraw, sources: [], options: [], content: null, pointer: null, tracing: false,
     bar: colourBar(), crops: cropStrip(signal), readout: h("p.readout"), tools: h("div.tools"), modes: h("div.tools"),
+    paths: h("div"),
     size: () => own.sources[0].layers,
+    showPaths: async (...of) => (await import("./pixel_paths.js")).showPaths(own.paths, ...of),
     change(values) {
       Object.assign(state, values);
       keep(query, Object.fromEntries(Object.entries(fields).map(([key, [, write]]) => [key, write(state)])));
@@ -216,13 +220,22 @@ export function viewer(query, signal) {
 
   return {
     element: h("figure.viewer",
-      own.modes, seen.frame, own.bar.element, own.readout, trouble, own.tools, own.crops.element),
+      own.modes, seen.frame, own.bar.element, own.readout, trouble, own.tools, own.crops.element, own.paths),
     show(sources) {
       own.sources = sources;
       seen.setSize(own.size());
       const names = sources.map((s) => s.name).join(" and ");
       seen.frame.ariaLabel = `Picture of ${names}. The question mark lists its keys.`;
       return refresh();
+    },
+    /// What is on the screen as parts of a figure's file (docs/figures.md): {scene: {crops, exposure}, error_map}.
+    screen() {
+      const look = own.content?.look;
+      const ev = look?.look === "colour" ? state.ev ?? look.ev : state.ev;
+      return {
+        scene: { crops: state.mode === "crops" ? [Object.values(state.crop)] : [], exposure: ev },
+        error_map: (state.show.startsWith(errors) && kindOf(state.show.slice(errors.length)).metric) || null,
+      };
     },
     open(key) {
       own.change({ show: key });

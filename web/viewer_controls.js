@@ -1,5 +1,5 @@
 // The controls of a viewer: keys, pointer and buttons.
-import { choice, h, select, small } from "./dom.js";
+import { button, choice, h, select, small } from "./dom.js";
 import { errorKinds } from "./errors.js";
 import { cropBetween, fitZoom, moved, movedCrop, pointAt, scaledCrop, zoomOf, zoomTo } from "./viewport.js";
 
@@ -55,6 +55,19 @@ export function viewerActions(own) {
       const at = options.findIndex((o) => o.key === state.show);
       change({ show: options[(at + by + options.length) % options.length].key });
     },
+    /// The mode in which a click shows the paths of a pixel.
+    setTracing(tracing) {
+      own.tracing = tracing;
+      own.redraw();
+    },
+    /// Shows the paths of the pixel under a point, in CSS pixels, by default the pointer or the middle of the frame.
+    trace(...at) {
+      const box = own.seen.box();
+      const [u, v] = at.length > 0 ? at : own.pointer ?? [box.width / 2, box.height / 2];
+      const { x, y } = pointAt(...view(), u, v);
+      const right = state.mode === "split" && u > state.split * box.width;
+      own.showPaths(own.sources[right ? state.right : state.left], [Math.floor(x), Math.floor(y)]);
+    },
     /// False if there is no such picture.
     pick(i) {
       if (own.sources.length < 2 || i >= own.sources.length) return false;
@@ -81,6 +94,7 @@ function press(key, actions) {
     ".": () => actions.shift(1),
     "[": () => actions.cycle(-1),
     "]": () => actions.cycle(1),
+    p: () => actions.trace(),
   };
   if (arrows[key]) return actions.move(...arrows[key]);
   if (/^[1-9]$/.test(key)) return actions.pick(Number(key) - 1);
@@ -107,6 +121,7 @@ export function listenTo(own) {
   });
   on("pointerdown", (event) => {
     if (event.button !== 0) return;
+    if (own.tracing) return actions.trace(...at(event));
     drag = actions.begin(...at(event));
     frame.setPointerCapture(event.pointerId);
   });
@@ -130,8 +145,8 @@ export const exposureTools = (value, setExposure) => h("span.exposure.tools",
     oninput: ({ target }) => target.value !== "" && setExposure(Number(target.value)) })),
   small("Auto", () => setExposure(null), "Automatic exposure"));
 
-/// The choice of layer, exposure and zoom. `stops` null: the layer has no exposure.
-export const viewerTools = (actions, { options, chosen, stops, zoom }) => [
+/// The choice of layer, exposure, zoom and clicks. `stops` null: the layer has no exposure.
+export const viewerTools = (actions, { options, chosen, stops, zoom, tracing }) => [
   choice("Show", options, chosen, (show) => actions.change({ show })),
   h("span", { hidden: stops === null }, stops !== null && exposureTools(stops, actions.setExposure)),
   h("span.tools",
@@ -139,6 +154,8 @@ export const viewerTools = (actions, { options, chosen, stops, zoom }) => [
     small("Fit", actions.fit, "Show the whole picture"),
     small("1:1", actions.oneToOne, "One picture pixel per screen pixel"),
     h("output.muted", `${Number((100 * zoom).toPrecision(3))} %`)),
+  button("Paths of a pixel", () => actions.setTracing(!tracing), { className: "small", "aria-pressed": String(tracing),
+    title: "Then a click on a pixel shows its brightest paths" }),
   small("Keys", () => document.getElementById("keys").click()),
 ];
 

@@ -203,3 +203,13 @@ export const states = [
   { name: "failed", terminal: true, actions: stopped },
   { name: "cancelled", terminal: true, actions: stopped },
 ];
+
+/// Two paths as `lacuna trace` tells them, in a scene of 4 by 3 by 1: one to an emitter, one to the environment.
+export const paths = {
+  seed: 1, mean: [0.5, 0.25, 0.125], bounds: [[0, 0, 0], [4, 3, 1]], count: 17, paths: [
+    { iteration: 3, s: 1, t: 2, letters: "EDL", value: [8, 4, 2], share: 0.75, weight: 0.5, vertices: [
+      { position: [4, 1, 1], from: "eye", density: 0 }, { position: [1, 0, 0.5], from: "eye", density: 0.25 },
+      { position: [2, 3, 0.5], from: "light", density: 1 }] },
+    { iteration: 0, s: 0, t: 3, letters: "ESL", value: [1, 1, 1], share: 0.125, weight: 1, vertices: [
+      { position: [4, 1, 1], from: "eye", density: 0 }, { position: [0, 1, 0.5], from: "eye", density: 2 },
+      { direction: [0, 1, 0], from: "eye", density: 3 }] }] };

@@ -8,7 +8,7 @@ import { extname } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { lacuna } from "../server/real_service.mjs";
-import { curve, makeJobs, manyJobs, progress, scenes, schema, states } from "./fixtures.mjs";
+import { curve, makeJobs, manyJobs, paths, progress, scenes, schema, states } from "./fixtures.mjs";
 
 const web = new URL("../../web/", import.meta.url);
 const types = {
@@ -83,7 +83,8 @@ async function body(request) {
 
 /// The mock: `jobs` may be changed at will; `update(id, changes)` and `drop(id)` also send the events.
 /// With a `token`, it must be known; with `events` false, no event stream is to be had; an `obstacle`
-/// keeps all jobs from going on.
+/// keeps all jobs from going on. `drawn` and `traced` are the last requests for a figure and for paths, and `refusal` is
+/// the answer to both, if it is not empty.
 export class Mock {
   constructor() {
     this.reset();
@@ -100,6 +101,8 @@ export class Mock {
     this.token = null;
     this.events = true;
     this.obstacle = "";
+    this.refusal = "";
+    this.drawn = this.traced = null;
     this.states = states;
     this.told = 0;
   }
@@ -174,12 +177,23 @@ export class Mock {
     if (path === "/api/schema/job") return sendJson(response, schema);
     if (path === "/api/jobs" && request.method === "POST") return this.post(request, response);
     if (path === "/api/jobs") return this.list(response, url.searchParams);
+    if (path === "/api/figures") {
+      this.drawn = { spec: await body(request), format: url.searchParams.get("format") };
+      if (this.refusal) return problem(response, 400, "Bad request", this.refusal);
+      return send(response, 200, "application/pdf", "%PDF");
+    }
     if (path === "/api/events") return this.follow(request, response, null);
-    const match = /^\/api\/jobs\/([^/]+)(?:\/(events|log|cancel|retry|extend|files)(?:\/([^/]+))?)?$/.exec(path);
+    const match = /^\/api\/jobs\/([^/]+)(?:\/(events|log|cancel|retry|extend|files|trace)(?:\/([^/]+))?)?$/.exec(path);
     if (!match) return notFound(response, path);
     const [, id, what, name] = match;
     const job = this.find(id);
     if (!job) return notFound(response, `job ${id}`);
+    if (what === "trace") {
+      const [x, y, samples] = ["x", "y", "samples"].map((key) => Number(url.searchParams.get(key)));
+      this.traced = { id, pixel: [x, y], samples };
+      if (this.refusal) return problem(response, 400, "Bad request", this.refusal);
+      return sendJson(response, { ...paths, pixel: [x, y], samples });
+    }
     if (request.method !== "GET") return this.change(request, response, job, what ?? request.method);
     if (what === undefined) return sendJson(response, detail(job));
     if (what === "events") return this.follow(request, response, job);

@@ -1,5 +1,6 @@
 // The page against the real service and the real renderer.
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 
 import { realFolders, startReal } from "../server/real_service.mjs";
@@ -64,6 +65,15 @@ test("the first job, from the empty list to its curve, picture and report; then 
   await page.goto(`${address}/#/compare?jobs=${first},${second}`);
   await page.waitForSelector(".plot[data-curves='2']");
   await page.waitForSelector(pictured);
+  await page.getByRole("button", { name: "Figure …" }).click();
+  const download = page.waitForEvent("download", patience);
+  await page.locator("dialog").getByRole("button", { name: "PDF" }).click();
+  const drawn = await readFile(await (await download).path(), "latin1");
+  assert.ok(drawn.startsWith("%PDF") && drawn.includes("/FontFile"));
+  await page.locator("dialog").getByRole("button", { name: "Close" }).click();
+  await page.locator(".stage").press("p");
+  await page.locator(".viewer svg polyline").first().waitFor(patience);
+  assert.match(await page.locator(".viewer tbody tr th").first().innerText(), /^E[DGS]*L$/);
   await screenshot(page, "real-compare");
 
   await page.goto(`${address}/#/`);

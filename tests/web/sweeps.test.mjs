@@ -59,6 +59,21 @@ test("the list of sweeps leads to one, which is live until it is done", async ()
   assert.deepEqual(page.troubles, []);
 });
 
+test("the figure of a sweep has the shown cells of one picture, with the crop on the screen", async () => {
+  const page = await openPage(browser, `${address}/#/sweep/${id}?picture=2&crop=2,3,8,6`);
+  await page.waitForSelector(".crops canvas", patience);
+  await page.getByRole("button", { name: "Figure …" }).click();
+  const asked = page.waitForRequest(/\/api\/figures\?format=svg$/, patience);
+  const download = page.waitForEvent("download", patience);
+  await page.locator("dialog").getByRole("button", { name: "SVG" }).click();
+  const { sweep: of, scenes, methods } = (await asked).postDataJSON();
+  assert.deepEqual([of, scenes.length, scenes[0].settings[depth], scenes[0].crops], [id, 1, 6, [[2, 3, 8, 6]]]);
+  assert.deepEqual(methods.map((m) => m.settings[nee]).toSorted(), [false, true]);
+  assert.equal((readFileSync(await (await download).path(), "utf8").match(/<image/g) ?? []).length, 1 + 3,
+    "the whole picture, a crop of each method and of the reference");
+  assert.deepEqual(page.troubles, []);
+});
+
 test("a sweep says who leads, how sure that is, and at which settings", async () => {
   const page = await openPage(browser, `${address}/#/sweep/${id}`);
   await drawn(page);
