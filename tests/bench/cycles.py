@@ -233,26 +233,8 @@ def measure(scene, run):
     return {"samples": samples, "cpu_seconds": seconds * samples / (samples - 1)}
 
 
-def save_pictures(pictures, folder):
-    """EXR files as PNG files, each [EXR, PNG, factor], by the sRGB curve, cut at 1."""
-    for source, target, factor in pictures:
-        image = bpy.data.images.load(source)
-        values = numpy.empty(len(image.pixels), dtype=numpy.float32)
-        image.pixels.foreach_get(values)
-        light = numpy.clip(values * factor, 0, 1)
-        coded = numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
-        coded[3::4] = 1
-        png = bpy.data.images.new("png", *image.size)
-        png.pixels.foreach_set(coded)
-        png.filepath_raw = folder + "/" + target
-        png.file_format = "PNG"
-        png.save()
-
-
 def main():
     spec = json.load(open(sys.argv[sys.argv.index("--") + 1]))
-    if "pictures" in spec:
-        return save_pictures(spec["pictures"], spec["folder"])
     begin = time.process_time()
     load(spec)
     loading = time.process_time() - begin

@@ -1,18 +1,19 @@
-"""Lacuna beside Blender's Cycles, on the same glTF files at equal CPU time.
+"""Lacuna beside Blender's Cycles, on the same glTF files at equal CPU time: a sweep, with Cycles as a foreign cell.
 
 First, scenes of known answers: does Cycles read materials, lights and lengths as Lacuna does? Then, for each scene, the
-means of 16 x 16 pixels of both agree with those of one reference to their noise; only then are errors compared.
+means of 16 x 16 pixels of both agree with those of references to their noise; only then are errors compared.
 Materials that only one of the two has (rough gloss) are made diffuse for both.
 
 CPU seconds are those of a process's threads while it renders. Cycles reports none: it renders 1 sample and n
-samples a pixel with the scene prepared, and the difference is the time of n - 1. Writes a page with the pictures to
-build/peers."""
+samples a pixel with the scene prepared, and the difference is the time of n - 1. Errors at equal time are those of the
+sweep's report, its efficiency 1 / (relMSE x seconds). Writes the figure and the report of each scene to build/peers."""
 
-import html
+import csv
 import json
 import math
 import os
 import pathlib
+import shutil
 import statistics
 import struct
 import subprocess
@@ -27,7 +28,7 @@ import shapes  # noqa: E402
 
 THREADS, BLOCK, DEPTH = 2, 16, 6
 SEEDS = (1, 2)
-LONGER = 6  # a reference takes so many times the time of a picture
+LONGER = 12  # a reference takes so many times the time of a picture
 PLAIN = {"path": {"type": "path"}, "path, reuse": {"type": "path", "reuse": 16}}
 OURS = {**PLAIN, "bdpt": {"type": "bdpt"}, "auto": {"type": "auto"}}
 CYCLES = {"Cycles": False, "Cycles, roulette": True}
@@ -110,34 +111,7 @@ def cycles(folder, spec):
     for line in done.stdout.splitlines():
         if line.startswith("cycles: "):
             return json.loads(line[len("cycles: "):])
-    if "pictures" in spec and done.returncode == 0:
-        return None
     raise SystemExit(f"bench: Blender failed\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
-
-
-class Picture:
-    """A picture of one method and seed: its file, samples a CPU second, and the CPU seconds of all threads."""
-
-    def __init__(self, file, samples, seconds):
-        self.file, self.rate, self.seconds = file, samples / seconds, seconds
-
-
-def ours(bench, job, method, seconds, seed):
-    out, report = bench.render(f"ours-{method.replace(', ', '-')}-{seed}", {
-        **job, "integrator": {**OURS[method], "max_depth": DEPTH}, "seed": seed, "threads": THREADS,
-        "budget": {"cpu_seconds": seconds / THREADS}})
-    return Picture(out / "image.exr", report["counts"]["samples"], report["seconds"]["render_cpu"] * THREADS)
-
-
-def theirs(bench, job, scene, seconds, seed):
-    """{method: a picture}, and what Cycles says of itself."""
-    runs = [{"seed": seed, "roulette": roulette, "cpu_seconds": seconds, "file": str(bench.folder / f"{method}-{seed}.exr")}
-            for method, roulette in CYCLES.items()]
-    told = cycles(bench.folder, {"scene": str(scene), "camera": job.get("camera", ""), "resolution": job["resolution"],
-                                 "max_depth": DEPTH, "threads": THREADS, "runs": runs})
-    pixels = math.prod(job["resolution"])
-    pictures = [Picture(r["file"], t["samples"] * pixels, t["cpu_seconds"]) for r, t in zip(runs, told["runs"])]
-    return dict(zip(CYCLES, pictures)), told
 
 
 def known_answers(bench):
@@ -160,118 +134,119 @@ def agreement(bench, pictures, references):
     much of the mean they differ beyond noise. Seeds of Cycles share a part of their error (on cornell-box .1 % of the mean
     at 50 samples a pixel, .03 % at 350), which looks like a difference."""
     def squared(a, b):
-        return bench.compare(a.file, b.file, BLOCK)["block_rms"] ** 2
+        return bench.compare(a, b, BLOCK)["block_rms"] ** 2
 
     distance = statistics.mean(squared(p, r) for p in pictures for r in references)
     noise = squared(*pictures) / 2 + squared(*references) / 2
-    c = bench.compare(pictures[0].file, references[0].file, BLOCK)
+    c = bench.compare(pictures[0], references[0], BLOCK)
     return math.sqrt(distance / noise), math.sqrt(max(0, distance - noise)) / c["mean_b"]
 
 
-def measure(bench, job, scene, seconds):
-    """{method: a picture of each seed}, references, what Cycles says of itself. Seed by seed: other work on the machine
-    slows all of them."""
-    pictures = {method: [] for method in (*OURS, *CYCLES)}
-    for seed in SEEDS:
-        found_by_cycles, told = theirs(bench, job, scene, seconds, seed)
-        for method, picture in found_by_cycles.items():
-            pictures[method].append(picture)
-        for method in OURS:
-            pictures[method].append(ours(bench, job, method, seconds, seed))
-    references = [ours(bench, job, "auto", LONGER * seconds, 1000 + seed) for seed in SEEDS]
-    return pictures, references, told
+def lacuna(bench, *arguments):
+    """What the command prints."""
+    return subprocess.run([ROOT / "build/release/bin/lacuna", *arguments], check=True, capture_output=True, text=True,
+                          env={**os.environ, "LACUNA_DATA": str(bench.folder / "data")}).stdout
 
 
-def noise_of(bench, references):
-    """relMSE of a reference, from two."""
-    return bench.compare(references[0].file, references[1].file, BLOCK)["relmse"] / 2
+def theirs(bench, job, scene, seconds):
+    """Cycles as integrators of a sweep, its million samples a CPU second, and what it says of itself."""
+    runs = [{"seed": seed, "roulette": roulette, "cpu_seconds": seconds, "file": str(bench.folder / f"{method}-{seed}.exr")}
+            for method, roulette in CYCLES.items() for seed in SEEDS]
+    told = cycles(bench.folder, {"scene": str(scene), "camera": job.get("camera", ""), "resolution": job["resolution"],
+                                 "max_depth": DEPTH, "threads": THREADS, "runs": runs})
+    cells, rates = [], {}
+    for i, method in enumerate(CYCLES):
+        of_method = slice(i * len(SEEDS), (i + 1) * len(SEEDS))
+        times = [t["cpu_seconds"] for t in told["runs"][of_method]]
+        cells.append({"type": "foreign", "name": method, "max_depth": DEPTH, "pictures": [
+            {"file": pathlib.Path(r["file"]).name, "seed": r["seed"], "seconds": s / THREADS, "cpu_seconds": s / THREADS}
+            for r, s in zip(runs[of_method], times)]})
+        rates[method] = sum(t["samples"] for t in told["runs"][of_method]) * math.prod(job["resolution"]) / sum(times) / 1e6
+    return cells, rates, told
 
 
-def errors(bench, pictures, references, noise):
-    """relMSE of a method, without the references' own, `noise`."""
-    return statistics.mean(bench.compare(p.file, r.file, BLOCK)["relmse"] for p in pictures for r in references) - noise
+def swept(bench, job, cells, seconds):
+    """The folder of the sweep of all methods, and its report."""
+    file, folder = bench.folder / "peers.json", bench.folder / "peers.sweep"
+    shutil.rmtree(folder, ignore_errors=True)
+    integrators = [{**method, "max_depth": DEPTH} for method in OURS.values()] + cells
+    file.write_text(json.dumps({
+        "seeds": len(SEEDS), "axes": {"/integrator": integrators}, "compare_at": {"clock": "cpu_seconds", "metric": "relmse"},
+        "job": {**job, "reference": "reference-1/image.exr", "budget": {"cpu_seconds": seconds / THREADS}}}))
+    lacuna(bench, "sweep", file, "--out", folder, "--quiet")
+    return folder, json.loads(lacuna(bench, "report", folder, "--json"))
 
 
-def rate(pictures):
+def rate(folders):
     """Million samples a CPU second of one thread."""
-    return statistics.mean(p.rate for p in pictures) / 1e6
+    reports = [json.loads((f / "report.json").read_text()) for f in folders]
+    return sum(r["counts"]["samples"] for r in reports) / sum(r["seconds"]["render_cpu"] for r in reports) / THREADS / 1e6
 
 
-def judge(bench, name, relmse, rates):
-    """Speed without roulette, and errors against the better of Cycles."""
-    best = min(relmse[m] for m in CYCLES)
+def at_floor(folder):
+    """Whether most of a run's last error is the reference's own noise."""
+    with open(folder / "curve.csv", newline="") as file:
+        return list(csv.DictReader(file))[-1]["at_floor"] == "1"
+
+
+def judge(bench, name, efficiency, rates):
+    """Speed without roulette, and errors at equal time against the better of Cycles."""
+    best = max(efficiency[m] for m in CYCLES)
     quick = rates["path"] / rates["Cycles"]
     bench.figure(f"{name}: samples a CPU second, path / Cycles, both without roulette", f"{quick:.2f}", "at least 1.5",
                  quick >= 1.5)
     for method in PLAIN:
-        plain = relmse[method] / best
+        plain = best / efficiency[method]
         bench.figure(f"{name}: relMSE at equal time, {method} / the better of Cycles", f"{plain:.3f}", "at most 0.5",
                      plain <= 0.5)
-    good = min(relmse[m] for m in OURS) / best
+    good = best / max(efficiency[m] for m in OURS)
     bench.figure(f"{name}: relMSE at equal time, our best / the better of Cycles", f"{good:.3f}", "at most 0.33",
                  good <= 1 / 3)
 
 
-def row(name, relmse, rates):
-    quick = " / ".join(f"{rates[m]:.3g}" for m in ("path", "bdpt", *CYCLES))
-    best = min(relmse, key=relmse.get)
-    cells = [f"{'**' if m == best else ''}{relmse[m]:.2g}{'**' if m == best else ''}" for m in (*OURS, *CYCLES)]
-    return [name, quick, *cells]
-
-
-def save_page(bench, folder, rows, pictures, told, seconds):
-    """The table, and the pictures of each scene side by side."""
-    cycles(bench.folder, {"pictures": pictures, "folder": str(folder)})
-    head = ["scene", "samples", *OURS, *CYCLES]
-    cells = "".join(f"<tr>{''.join(f'<td>{html.escape(c)}' for c in r)}" for r in [head, *rows])
-    figures = "".join(f'<figure><img src="{png}"><figcaption>{html.escape(png[:-4])}</figcaption></figure>'
-                      for _, png, _ in pictures)
-    (folder / "index.html").write_text(
-        "<!doctype html><meta charset=utf-8><title>Lacuna beside Cycles</title><style>body{font:14px sans-serif}"
-        "td{padding:2px 10px}figure{display:inline-block;margin:4px}</style>"
-        f"<h1>Lacuna beside Cycles {told['version']}</h1><p>{seconds:g} CPU seconds a picture, {THREADS} threads, paths of "
-        f"{DEPTH} edges. samples: million a CPU second of path / bdpt / {' / '.join(CYCLES)}; the others: relMSE.</p>"
-        f"<table>{cells}</table>{figures}")
+def save(bench, folder, name):
+    """The figure of a scene and its report in build/peers; prints the figure's table."""
+    out = ROOT / "build/peers" / name.replace(", ", "-").replace(" ", "-")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    spec = json.loads(lacuna(bench, "figure", "--suggest", folder))
+    spec["scenes"][0]["name"] = name
+    for method, label in zip(spec["methods"], (*OURS, *CYCLES)):
+        method["name"] = label
+    file = bench.folder / "figure.json"
+    file.write_text(json.dumps({**spec, "sweep": folder.name}))
+    lacuna(bench, "figure", file, "-o", out.with_suffix(".pdf"), "-o", out.with_suffix(".md"))
+    lacuna(bench, "report", folder, "-o", out.with_suffix(".html"))
+    print(out.with_suffix(".md").read_text())
 
 
 def run(bench, options):
     seconds = options.peers_seconds
-    folder = ROOT / "build/peers"
-    folder.mkdir(parents=True, exist_ok=True)
     for name, with_bulb in (("day", False), ("bulb", True)):
         (bench.folder / f"{name}.glb").write_bytes(furnished(with_bulb))
     known_answers(bench)
-    rows, gallery, told = [], [], {}
     for name in options.peers_scenes or SCENES:
         scene = bench.folder / "scene.glb"
         data, changed = diffuse_where_rough(found(SCENES[name]["scene"]).read_bytes())
         scene.write_bytes(data)
-        job = {"resolution": [256, 144], **SCENES[name], "scene": scene.name}
-        pictures, references, told = measure(bench, job, scene, seconds)
-        print(f"  {name}: diffuse in both: {', '.join(changed) or 'nothing new'}; CPU seconds of Cycles to load "
-              f"{told['loading']:.2f}, to prepare {told['preparing']:.2f}")
-        for method, of_method in pictures.items():
-            ratio, beyond = agreement(bench, of_method, references)
+        job = {"resolution": [256, 144], **SCENES[name], "scene": scene.name, "threads": THREADS}
+        cells, rates, told = theirs(bench, job, scene, seconds)
+        references = [bench.render(f"reference-{seed}", {
+            **job, "integrator": {**OURS["auto"], "max_depth": DEPTH}, "seed": 1000 + seed,
+            "budget": {"cpu_seconds": LONGER * seconds / THREADS}})[0] for seed in SEEDS]
+        folder, report = swept(bench, job, cells, seconds)
+        print(f"  {name}: Cycles {told['version']}; diffuse in both: {', '.join(changed) or 'nothing new'}; CPU seconds of "
+              f"Cycles to load {told['loading']:.2f}, to prepare {told['preparing']:.2f}")
+        efficiency = {}
+        for method, cell in zip((*OURS, *CYCLES), report["cells"]):
+            runs = [folder / "runs" / r["name"] for r in cell["runs"]]
+            ratio, beyond = agreement(bench, runs, references)
             bench.figure(f"{name}: blocks of {method} against the reference / noise", f"{ratio:.2f}",
                          f"at most 1.5, or 1 % of the mean beyond noise ({100 * beyond:.2f} %)", ratio <= 1.5 or beyond <= 0.01)
-        noise = noise_of(bench, references)
-        relmse = {m: errors(bench, p, references, noise) for m, p in pictures.items()}
-        share = noise / min(relmse.values())
-        bench.figure(f"{name}: relMSE of the reference / of the best", f"{share:.2f}", "at most 0.25", 0 <= share <= 0.25)
-        rates = {m: rate(p) for m, p in pictures.items()}
-        judge(bench, name, relmse, rates)
-        rows.append(row(name, relmse, rates))
-        exposure = bench.compare(references[0].file, references[1].file, BLOCK)["exposure"]
-        slug = name.replace(", ", "-").replace(" ", "-")
-        for method, shown in (*pictures.items(), ("reference", references)):
-            kept = folder / f"{slug}-{method.replace(', ', '-')}.exr"
-            kept.write_bytes(pathlib.Path(shown[0].file).read_bytes())
-            gallery.append([str(kept), f"{kept.stem}.png", exposure])
-    print(f"\nrelMSE at {seconds:g} CPU seconds, paths of {DEPTH} edges, Cycles {told['version']}; million samples a CPU "
-          f"second of path / bdpt / {' / '.join(CYCLES)}\n")
-    print("| scene | samples |", " | ".join((*OURS, *CYCLES)), "|")
-    print("| --- | --- |" + " --- |" * (len(OURS) + len(CYCLES)))
-    for r in rows:
-        print("|", " | ".join(r), "|")
-    save_page(bench, folder, rows, gallery, told, seconds)
-    print(f"\npictures: {folder / 'index.html'}")
+            efficiency[method] = cell["efficiency"]["value"]
+            if method in ("path", "bdpt"):
+                rates[method] = rate(runs)
+        noisy = sum(at_floor(f) for f in (folder / "runs").iterdir())
+        bench.figure(f"{name}: pictures whose MSE is mostly noise of the reference", str(noisy), "none", noisy == 0)
+        judge(bench, name, efficiency, rates)
+        print("  million samples a CPU second:", ", ".join(f"{m} {r:.3g}" for m, r in rates.items()))
+        save(bench, folder, name)
