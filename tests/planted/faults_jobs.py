@@ -74,4 +74,9 @@ FAULTS = [
           "last.at_floor |= next.at_floor;", "last.at_floor = next.at_floor;", SWEEP),
     Fault("products of pictures count those with themselves", "jobs/report/replicate_bias.cpp",
           "static_cast<double>(n_ * (n_ - 1))", "static_cast<double>(n_ * n_)", ("test_report",)),
+    Fault("seeds of a figure's jobs are cells of their own", "jobs/figure/figure_cells.cpp",
+          'std::to_array<std::string_view>({"label", "seed"})', 'std::to_array<std::string_view>({"label"})', ("test_figure",)),
+    Fault("crops are where errors are largest", "jobs/report/telling_crops.cpp",
+          "spread.push_back(errors_.size() > 1 ? high - low : high);", "spread.push_back(low > high ? low : high);",
+          ("test_report",)),
 ]

@@ -78,4 +78,7 @@ FAULTS = [
     Fault("sweeps fill the queue for all others", "server/keeper/sweep_keeper.cpp",
           "queue_.room() - std::min(queue_.room(), kept_free_)", "queue_.room()",
           ("tests/server/sweep_runs.test.mjs",)),
+    Fault("a figure reads what its client names", "server/routes/tool_routes.cpp",
+          'run({"figure", "figure.json", "--ids", "--out"', 'run({"figure", "figure.json", "--out"',
+          ("tests/server/figures.test.mjs",)),
 ]

@@ -68,4 +68,6 @@ FAULTS = [
           "const next = Math.min(largestZoom, zoom);", "const next = zoom;", NUMBERS),
     Fault("before the first layer there is none", "web/viewer_controls.js",
           "options[(at + by + options.length) % options.length]", "options[(at + by) % options.length]", PICTURES),
+    Fault("paths are seen upside down", "web/pixel_paths.js", "[0, 2, 1], [0, 1, -1]]", "[0, 2, 1], [0, 1, 1]]",
+          ("tests/web/paper_figure.test.mjs",)),
 ]
