@@ -13,6 +13,7 @@
 #include "jobs/cli/terminal.h"
 #include "jobs/run/pixel_paths.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/spec/problems.h"
 
 namespace lacuna {
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 fs::path named_folder(const std::string& name, const std::optional<fs::path>& folder,
                       const fs::path& known) {
   const bool is_path = folder && fs::exists(*folder / name);
-  const fs::path found = folder_path(is_path ? *folder / name : known / name);
+  fs::path found = folder_path(is_path ? *folder / name : known / name);
   if (is_path || (is_job_id(name) && fs::exists(found))) return found;
   throw std::runtime_error("there is no such folder");
 }
@@ -54,24 +54,24 @@ class GivenJobs {
   void add(std::size_t method, JobSpec job, std::string folder) {
     constexpr auto of_a_run = std::to_array<std::string_view>({"label", "seed"});
     OrderedJson document = ObjectWriter::value_of(job);
-    const auto [cell, is_new] =
+    const auto known =
         known_.try_emplace({method, hash_without(document, of_a_run)}, plan_.cells.size());
-    if (is_new) {
+    const std::size_t cell = known.first->second;
+    if (known.second) {
       plan_.cells.push_back({{}, std::move(job), {}});
       methods_.push_back(method);
       documents_.emplace_back(std::move(document));
     }
-    const auto is_run = [&](const SweepRun& r) { return r.cell == cell->second; };
-    const auto runs = std::ranges::count_if(plan_.runs, is_run);
-    plan_.runs.push_back({cell->second, static_cast<int>(runs), std::move(folder)});
+    const auto runs = std::ranges::count(plan_.runs, cell, &SweepRun::cell);
+    plan_.runs.push_back({cell, static_cast<int>(runs), std::move(folder)});
   }
 
   void set_settings() {
-    for (const auto& [key, value] : documents_.front().items()) {
-      const auto differs = [&](const Json& job) { return job.at(key) != value; };
-      if (std::ranges::find(not_in_a_reference, key) == not_in_a_reference.end() &&
+    for (const auto& first : documents_.front().items()) {
+      const auto differs = [&](const Json& job) { return job.at(first.key()) != first.value(); };
+      if (std::ranges::find(not_in_a_reference, first.key()) == not_in_a_reference.end() &&
           std::ranges::any_of(documents_, differs)) {
-        set("/" + key);
+        set("/" + first.key());
       }
     }
     for (std::size_t s = 0; s < spec_.scenes.size(); ++s) {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "jobs/report/sweep_pictures.h"
 #include "jobs/spec/described_json.h"
@@ -51,8 +50,10 @@ class Finder {
     const auto& swept = plan_.cells.front().settings;
     for (const auto& [pointer, value] : settings) {
       if (swept.contains(pointer)) continue;
+      std::vector<std::string> names;
+      for (const auto& [name, any] : swept) names.push_back(name);
       problem(at, fmt::format("found \"{}\", which the sweep does not vary; allowed: \"{}\"",
-                              pointer, fmt::join(std::views::keys(swept), "\", \"")));
+                              pointer, fmt::join(names, "\", \"")));
     }
     return problems_.size() == before;
   }

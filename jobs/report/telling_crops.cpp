@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <functional>
 #include <numeric>
-#include <ranges>
 
 #include "renderer/settings/error_metrics.h"
 
@@ -43,9 +42,9 @@ std::vector<PixelRect> TellingCrops::choose(std::size_t count) const {
   if (errors_.empty()) return {grid_[grid_.size() / 2]};
   std::vector<double> spread;
   for (std::size_t i = 0; i < grid_.size(); ++i) {
-    const auto here = [i](const std::vector<double>& e) { return e[i]; };
-    const auto [low, high] = std::ranges::minmax(errors_ | std::views::transform(here));
-    spread.push_back(errors_.size() > 1 ? high - low : high);
+    const auto here = [i](const auto& a, const auto& b) { return a[i] < b[i]; };
+    const auto [low, high] = std::minmax_element(errors_.begin(), errors_.end(), here);
+    spread.push_back((*high)[i] - (errors_.size() > 1 ? (*low)[i] : 0));
   }
   std::vector<std::size_t> order(grid_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

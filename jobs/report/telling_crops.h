@@ -17,9 +17,8 @@ class TellingCrops {
   /// all; empty: the methods are compared with the first.
   void add(const std::vector<double>& picture, const std::vector<double>& reference);
 
-  /// At most `count` squares without common pixels: those in which the methods' relative errors
-  /// differ most, or in which that of a single method is largest. In the middle if no errors are
-  /// known.
+  /// At most `count` squares without common pixels, in which the methods' relative errors differ
+  /// most, or that of a single method is largest; the middle if no errors are known.
   std::vector<PixelRect> choose(std::size_t count) const;
 
  private:
