@@ -36,8 +36,8 @@ struct GuidedAgreement {
 
 const std::vector<GuidedAgreement> guided_agreements{
     {{"cornell"}, 5, 200, 0.03},
-    {{"spot"}, 3, 150, 0.02},
-    {{"open", true}, 4, 250, 0.05},
+    {{"spot"}, 3, 60, 0.02},
+    {{"open", true}, 4, 150, 0.05},
     {{"ajar"}, 5, 200, 0.09},
 };
 const std::vector<GuidedAgreement> more_guided_agreements{
@@ -77,7 +77,7 @@ TEST_P(Guided, AgreesWithoutNextEventEstimation) {
   for (const auto& [name, guide] : test::guides()) {
     SCOPED_TRACE(name);
     path.guide = guide;
-    expect_same_picture(render(load(a.scene), guided_picture(path, 8 * a.iterations)), expected,
+    expect_same_picture(render(load(a.scene), guided_picture(path, 3 * a.iterations)), expected,
                         0.06);
   }
 }

@@ -125,14 +125,14 @@ TEST(LongMetropolis, AnyNumberOfChains) {
 // shares of the picture.
 TEST(Metropolis, RoomsHaveTheirShares) {
   const PathScene scene{"two_rooms"};
-  RenderSettings expected = square_picture(test::path_tracing(5), 8, 4000);
+  RenderSettings expected = square_picture(test::path_tracing(5), 8, 1600);
   expected.seed = 2;
   const Rendering reference = render(load(scene), expected);
   for (const int number : {1, 3, 50}) {
     SCOPED_TRACE(testing::Message() << number << " chains");
     MetropolisSettings s = chains(5, {});
     s.chains = number;
-    expect_same_picture(render(load(scene), square_picture(s, 8, 1000)), reference, 0.1);
+    expect_same_picture(render(load(scene), square_picture(s, 8, 400)), reference, 0.1);
   }
 }
 
