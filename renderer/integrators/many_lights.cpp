@@ -71,7 +71,10 @@ class ManyLights final : public Integrator {
                   {settings_.max_depth - 1, by_lights(), least_alpha_});
     Counters counters;
     if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
-    lights.arrange([this](const VplGeometry& p) { return visibility_.group(p); });
+    lights.arrange([this](const VplGeometry& p) -> LightGroup {
+      const LightGroup group = visibility_.group(p);
+      return clusters() ? group * visibility_.cells() + visibility_.cell(p) : group;
+    });
     lights_ = static_cast<double>(lights.size());
     passes.begin("visibility", seconds_.visibility);
     const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
@@ -84,6 +87,10 @@ class ManyLights final : public Integrator {
     }
     if (random()) sampler.emplace(terms, *random(), cubes ? &*cubes : nullptr);
     if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
+    std::optional<VplTree> tree;
+    std::optional<ClusterSampler> cluster_sampler;
+    std::optional<Lightcuts> cuts;
+    if (clusters()) cluster_sampler.emplace(terms, tree.emplace(lights, context), *clusters());
     for (const BlockRange& range : visibility_.passes(lights)) {
       passes.begin("visibility", seconds_.visibility);
       if (lights.size() > 0) {
@@ -92,12 +99,16 @@ class ManyLights final : public Integrator {
                                        .max_depth = settings_.max_depth,
                                        .least_alpha = least_alpha_,
                                        .lights = range,
-                                       .sampled = sampled(lights.size())});
+                                       .sampled = sampled(lights.size()),
+                                       .equal = !clusters() && !lightcuts()});
       }
       passes.begin("eye paths", seconds_.eye);
-      counters +=
-          gather(context,
-                 {terms, sampler ? &*sampler : nullptr, filter ? &*filter : nullptr, range}, image);
+      if (lightcuts()) cuts.emplace(terms, tree.emplace(lights, context, range), *lightcuts());
+      const auto given = [](auto& o) { return o ? &*o : nullptr; };
+      counters += gather(
+          context,
+          {terms, {given(sampler), range, given(cluster_sampler), given(cuts)}, given(filter)},
+          image);
     }
     visibility_.end();
     if (sampler) culled_ = sampler->culled(), culling_tests_ = double(sampler->tests());
@@ -124,14 +135,20 @@ class ManyLights final : public Integrator {
   /// The data that all tiles of a picture share.
   struct Gathering {
     const VplContributions& terms;
-    VplSampler* sampler;  // null: all lights
-    LightFilter* filter;  // null: none
-    BlockRange range;     // of this pass; the first pass adds all other light
+    GatheredLights lights;  // of the range of this pass; the first pass adds all other light
+    LightFilter* filter;    // null: none
   };
 
   /// The settings of light sampling; null: all lights are gathered.
   const RandomLightsSettings* random() const {
     return std::get_if<RandomLightsSettings>(&settings_.gather);
+  }
+
+  const LightcutsSettings* lightcuts() const {
+    return std::get_if<LightcutsSettings>(&settings_.gather);
+  }
+  const ClusterLightsSettings* clusters() const {
+    return std::get_if<ClusterLightsSettings>(&settings_.gather);
   }
 
   /// Whether octrees of the scene and of the lights cull lights.
@@ -141,6 +158,8 @@ class ManyLights final : public Integrator {
   }
   /// Largest number of lights that a shading point gathers, of `lights`.
   std::size_t sampled(std::size_t lights) const {
+    if (clusters()) return static_cast<std::size_t>(clusters()->lights);
+    if (lightcuts()) return static_cast<std::size_t>(lightcuts()->most);
     if (!random()) return ~std::size_t{0};
     const auto step = static_cast<std::size_t>(random()->interleave * random()->interleave);
     return step > 0 ? (lights + step - 1) / step : static_cast<std::size_t>(random()->lights);
@@ -251,7 +270,7 @@ class ManyLights<V>::TilePass {
     part_.shaded.fill(0);
     part_.sums.fill({});
     start_paths(context_, image, tile, batch_);
-    if (with_.range.is_first()) counters_.samples += batch_.states.size();
+    if (with_.lights.range.is_first()) counters_.samples += batch_.states.size();
     trace_paths();
     gather();
     add(image);
@@ -261,7 +280,7 @@ class ManyLights<V>::TilePass {
   /// Adds emission or direct light, of a path of `edges` edges, to the pixel of path `i`.
   void contribute(std::size_t i, int edges, const Rgb& value) {
     batch_.radiance[i] += value;
-    if (with_.range.is_first()) context_.light.add(batch_.pixels[i], edges, 0, value);
+    if (with_.lights.range.is_first()) context_.light.add(batch_.pixels[i], edges, 0, value);
   }
 
   void trace_paths() {
@@ -272,7 +291,7 @@ class ManyLights<V>::TilePass {
               counters_);
     walk.trace_paths(
         batch_.states, [this](std::size_t i, int depth) { return visit(i, depth); }, selection_);
-    if (!with_.range.is_first()) {
+    if (!with_.lights.range.is_first()) {
       part_.shadows = {};
       batch_.radiance.fill(Rgb(0, 0, 0));
       return;
@@ -299,7 +318,7 @@ class ManyLights<V>::TilePass {
     if (!first && !settings_.compensation) return false;
     if (first && lit_by_lights) {
       part_.shaded[i] = depth;
-      if (!with_.range.is_first()) return false;
+      if (!with_.lights.range.is_first()) return false;
     } else if (shared && lit_by_lights) {
       const float weight = missing(before, v);
       if (weight == 0) return false;
@@ -385,9 +404,8 @@ Counters ManyLights<V>::gather(const IterationContext& context, const Gathering&
   const Tiling tiling(image, batch_side);
   Spares<Part> parts;
   const auto make = [&] {
-    return std::make_unique<Part>(
-        EyeBatch(settings_.max_depth),
-        LightGather<V>(context, with.terms, visibility_, {with.sampler, with.range}));
+    return std::make_unique<Part>(EyeBatch(settings_.max_depth),
+                                  LightGather<V>(context, with.terms, visibility_, with.lights));
   };
   return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
     parts.with(make, [&](Part& part) {

@@ -79,7 +79,9 @@ std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& 
 
 Counters CachePoints::build(const LightPass& pass) {
   Counters counters;
-  const std::vector<std::uint32_t> pixels = choose(pass, counters);
+  const bool of_use = pass.equal || keep_ == Keep::visibilities;
+  const std::vector<std::uint32_t> pixels =
+      of_use ? choose(pass, counters) : std::vector<std::uint32_t>{};
   points_.assign(pixels.size(), {V3f(0, 0, 0), V3f(0, 0, 0)});
   variances_.assign(pixels.size(), 0.0);
   scales_.assign(pixels.size(), 0.0);
@@ -156,7 +158,8 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
   flush();
   const auto n = static_cast<double>(std::max<std::size_t>(1, lights.size()));
   const double mean = sum / n;
-  variances_[point] = at.scale > 0 ? std::max(0.0, sum2 / n - mean * mean) : 0.0;
+  const bool known = pass.equal && at.scale > 0;
+  variances_[point] = known ? std::max(0.0, sum2 / n - mean * mean) : 0.0;
   scales_[point] = double(at.scale);
 }
 

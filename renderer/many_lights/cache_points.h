@@ -15,6 +15,7 @@ struct LightPass {
   float least_alpha;  ///< Bsdf::is_vpl_receiver()
   BlockRange lights = {};
   std::size_t sampled = ~std::size_t{0};  ///< lights gathered per shading point, if not all
+  bool equal = true;                      ///< lights are sampled with equal probabilities
 
   std::size_t gathered() const { return std::min(sampled, terms.lights().size()); }
 };
@@ -45,7 +46,8 @@ class CachePoints {
         all_(keep == Keep::visibilities && tested == CacheLights::all) {}
 
   /// Selects the points and tests the lights at them. Throws MemoryLimitError if there is no memory
-  /// for the bits.
+  /// for the bits. If lights are sampled by importance, the variance of their contributions is not
+  /// that of the estimate: it stays unknown.
   Counters build(const LightPass& pass);
 
   /// The nearest cache points of a shading point.
@@ -57,8 +59,8 @@ class CachePoints {
   Neighbours nearest(const ShadingPoint& at) const;
 
   /// Standard deviation of the lights' contributions (luminance, with visibility) to `at`: `of` the
-  /// point itself, of its cache points, or the root mean square over the picture. 0 if there is no
-  /// cache point. `neighbours`: of `at`; not used for the picture.
+  /// point itself, of its cache points, or the root mean square over the picture. 0 if it is
+  /// unknown or there is no cache point. `neighbours`: of `at`; not used for the picture.
   float deviation(VarianceOf of, const ShadingPoint& at, const Neighbours& neighbours) const;
   /// q: the weighted mean visibility of each light of `block` over the nearest points at which it
   /// was tested: with CacheLights::lit, those at which the light has a contribution. Returns a mask

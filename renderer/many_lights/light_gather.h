@@ -1,5 +1,7 @@
 #pragma once
 
+#include "renderer/many_lights/cluster_sampler.h"
+#include "renderer/many_lights/lightcuts.h"
 #include "renderer/many_lights/visibility_estimate.h"
 #include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/many_lights/vpl_sampler.h"
@@ -14,10 +16,12 @@ struct LightSum {
   std::uint64_t tests = 0;  ///< lights tested by a shadow ray
 };
 
-/// The virtual lights to gather.
+/// The virtual lights to gather: all of them, unless one of the pointers is not null.
 struct GatheredLights {
-  VplSampler* sampler = nullptr;  ///< null: all of them
-  BlockRange range = {};          ///< only those of these blocks
+  VplSampler* sampler = nullptr;
+  BlockRange range = {};  ///< only those of these blocks
+  const ClusterSampler* clusters = nullptr;
+  const Lightcuts* cuts = nullptr;  ///< of the lights of the range
 };
 
 /// Sums the contributions of all virtual lights, or of the sampled ones, to the shading points of a
@@ -31,7 +35,7 @@ class LightGather {
       : context_(context),
         terms_(terms),
         visibility_(visibility),
-        sampler_(gathered.sampler),
+        gathered_(gathered),
         range_(gathered.range),
         by_length_(context.light) {}
 
@@ -42,8 +46,16 @@ class LightGather {
     for (const ShadingPoint& p : points) states_.push_back(visibility_.at(p, context_));
     visibility_.share(points, std::span(states_), context_);
     if (by_length_) lengths_.assign(points.size() * length_count(), V3d(0));
-    if (sampler_ != nullptr) {
-      gather_sampled(points, sums, counters);
+    if (gathered_.sampler != nullptr) {
+      add_samples(gathered_.sampler->sample(points, context_), points, sums, counters);
+    } else if (gathered_.clusters != nullptr) {
+      cells_.clear();
+      for (const auto& state : states_) cells_.push_back(visibility_.cell(state));
+      const auto rate = [this](std::uint32_t c, std::size_t b) { return visibility_.rate(c, b); };
+      add_samples(gathered_.clusters->sample(points, context_, {cells_, rate}), points, sums,
+                  counters);
+    } else if (gathered_.cuts != nullptr) {
+      for (std::size_t i = 0; i < points.size(); ++i) add_cut(points[i], i, sums[i], counters);
     } else {
       gather_all(points, sums, counters);
     }
@@ -93,15 +105,47 @@ class LightGather {
     }
   }
 
-  void gather_sampled(std::span<const ShadingPoint> points, std::span<LightSum> sums,
-                      Counters& counters) {
-    const std::vector<VplSampler::Sample> samples = sampler_->sample(points, context_);
+  void add_samples(const std::vector<VplSampler::Sample>& samples,
+                   std::span<const ShadingPoint> points, std::span<LightSum> sums,
+                   Counters& counters) {
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const VplSampler::Sample& s = samples[k];
       if (!range_.contains(s.block)) continue;
       add(points[s.point], s, sums[s.point], counters);
       if (k + 1 == samples.size() || samples[k + 1].block != s.block) end_block(sums, counters);
     }
+  }
+
+  void add_cut(const ShadingPoint& at, std::size_t point, LightSum& sum, Counters& counters) {
+    const auto cut = gathered_.cuts->cut(at, [&](std::size_t block, int i, float weight) {
+      return traced(at, {block, point, std::uint64_t{1} << i, weight}, sum, counters);
+    });
+    for (const Lightcuts::Entry& e : cut) {
+      sum.value += e.value;
+      if (by_length_) length(point, gathered_.cuts->edges(e)) += e.value;
+    }
+    if (context_.stop()) throw IterationStopped{};
+  }
+
+  /// The contribution of one light, whose shadow ray is traced at once.
+  V3d traced(const ShadingPoint& at, const VplSampler::Sample& sample, LightSum& sum,
+             Counters& counters) {
+    typename Visibility::At& state = states_[sample.point];
+    const int i = std::countr_zero(sample.lights);
+    if (visibility_.hides(state, sample.block)) return V3d(0);
+    terms_.evaluate(at, sample.block, term_, sample.lights, sample.weight);
+    counters.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
+    if (term_.lit == 0) return V3d(0);
+    visibility_.decide(state, sample.block, term_, decision_);
+    float v = decision_.untested[i];
+    if (decision_.tests != 0) {
+      ++counters.shadow_rays, ++sum.tests;
+      if (!context_.scene.rays().occluded(terms_.ray(at, sample.block, i))) {
+        visibility_.seen(state, visibility_.tested(state, i));
+        v += decision_.gain[i];
+      }
+    }
+    return V3d(Rgb(term_.r[i], term_.g[i], term_.b[i])) * double(v);
   }
 
   void end_block(std::span<LightSum> sums, Counters& counters) {
@@ -159,12 +203,13 @@ class LightGather {
   const IterationContext& context_;
   const VplContributions& terms_;
   const Visibility& visibility_;
-  VplSampler* sampler_;
+  GatheredLights gathered_;
   BlockRange range_;
   bool by_length_;
   std::vector<V3d> lengths_;  // of each point, the sums by the edges of its lights
   std::size_t blocks_ = 0;    // processed
   std::vector<typename Visibility::At> states_;       // of each point
+  std::vector<std::uint32_t> cells_;                  // of each point
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<PendingContribution> queue_;
   Terms term_;

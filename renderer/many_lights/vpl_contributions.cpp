@@ -34,9 +34,7 @@ template <class LeavesOut>
 std::uint64_t PointLanes::all_but(LeavesOut&& leaves_out) const {
   std::uint64_t out = 0;
   for (int k = 0; 8 * k < static_cast<int>(size_); ++k) {
-    const Float8x3 x{x_.eight(k), y_.eight(k), z_.eight(k)};
-    const Float8x3 n{nx_.eight(k), ny_.eight(k), nz_.eight(k)};
-    out |= std::uint64_t{leaves_out(x, n)} << (8 * k);
+    out |= std::uint64_t{leaves_out(x(k), n(k))} << (8 * k);
   }
   return all() & ~out;
 }

@@ -35,6 +35,10 @@ struct ShadingPoint {
 class PointLanes {
  public:
   void add(const ShadingPoint& p);
+  std::size_t size() const { return size_; }
+  /// Positions, and normals on the side of the eye, of points 8 `group` to 8 `group` + 7.
+  Float8x3 x(int group) const { return {x_.eight(group), y_.eight(group), z_.eight(group)}; }
+  Float8x3 n(int group) const { return {nx_.eight(group), ny_.eight(group), nz_.eight(group)}; }
   /// A mask of all points.
   std::uint64_t all() const {
     return size_ < 64 ? (std::uint64_t{1} << size_) - 1 : ~std::uint64_t{0};
@@ -73,6 +77,8 @@ class VplContributions {
   VplContributions(const VplSet& lights, float bound) : lights_(lights), bound_(bound) {}
 
   const VplSet& lights() const { return lights_; }
+  /// The bound of the geometric term.
+  float bound() const { return bound_; }
   /// min(G, bound) / G, for the geometric term G of two surfaces with direction `w` between them.
   float share(const Vertex& a, const Vertex& b, const V3f& w) const {
     const float cosines = abs_dot(a.surface.ng, w) * abs_dot(b.surface.ng, w);

@@ -49,9 +49,7 @@ std::vector<VplSampler::Sample> VplSampler::sample(std::span<const ShadingPoint>
   if (cubes_ == nullptr) tests_ += stretches_.size() * points.size();
   pairs_ += pairs;
   left_ += kept;
-  std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
-    return std::pair(a.block, a.point) < std::pair(b.block, b.point);
-  });
+  std::sort(samples.begin(), samples.end());
   return samples;
 }
 

@@ -31,6 +31,7 @@ class VplSampler {
     std::size_t point;     ///< index of the shading point
     std::uint64_t lights;  ///< mask
     float weight;          ///< 1 / probability
+    auto operator<=>(const Sample&) const = default;
   };
   /// Samples lights for at most Lanes::size `points`; the result is sorted by block, then by point.
   /// Counts pairs for culled(). Thread-safe.

@@ -11,6 +11,7 @@ namespace lacuna {
 struct AllLightsSettings {
   static constexpr std::string_view name = "all";
   static constexpr std::string_view doc = "every virtual light";
+  static bool biased() { return false; }
   bool operator==(const AllLightsSettings&) const = default;
 };
 template <class V>
@@ -96,7 +97,60 @@ void describe(V& v, RandomLightsSettings& s) {
      .max = 10});
 }
 
+/// gather: lightcuts.
+struct LightcutsSettings {
+  static constexpr std::string_view name = "lightcuts";
+  static constexpr std::string_view doc =
+      "clusters of virtual lights, a cut through a light tree for each shading point, each by one "
+      "light of it that stands for all (biased; Walter et al. 2005)";
+
+  double error = 0.02;
+  int most = 1000;
+
+  static bool biased() { return true; }
+  bool operator==(const LightcutsSettings&) const = default;
+};
+template <class V>
+void describe(V& v, LightcutsSettings& s) {
+  v("error", s.error,
+    {.doc = "clusters are divided until the largest possible error of one is below this share of "
+            "the light at the shading point",
+     .min = 0,
+     .max = 1});
+  v("most", s.most, {.doc = "clusters for each shading point, at most", .min = 1, .max = 1 << 20});
+}
+
+/// gather: clusters.
+struct ClusterLightsSettings {
+  static constexpr std::string_view name = "clusters";
+  static constexpr std::string_view doc =
+      "a few virtual lights for each shading point, by importance: clusters of a cut through a "
+      "light tree, one cut for 8 x 8 pixels, are sampled by their estimated contribution and by "
+      "the learned rate of visibility of `visibility` `probabilistic`";
+
+  int lights = 64;
+  int nodes = 512;
+  double power_share = 0.1;
+
+  static bool biased() { return false; }
+  bool operator==(const ClusterLightsSettings&) const = default;
+};
+template <class V>
+void describe(V& v, ClusterLightsSettings& s) {
+  v("lights", s.lights, {.doc = "virtual lights for each shading point", .min = 1, .max = 1 << 20});
+  v("nodes", s.nodes,
+    {.doc = "clusters of a cut; at least one for each length of light paths and kind of light",
+     .min = 1,
+     .max = 1 << 16});
+  v("power_share", s.power_share,
+    {.doc = "share of the lights that are sampled by power, whatever their estimate",
+     .min = 0,
+     .max = 1,
+     .above_min = true});
+}
+
 /// Which virtual lights are gathered at a shading point.
-using GatherSettings = std::variant<AllLightsSettings, RandomLightsSettings>;
+using GatherSettings =
+    std::variant<AllLightsSettings, RandomLightsSettings, LightcutsSettings, ClusterLightsSettings>;
 
 }  // namespace lacuna

@@ -65,8 +65,8 @@ struct ManyLightsSettings : PathLengths {
           return false;
         },
         visibility);
-    const auto* random = std::get_if<RandomLightsSettings>(&gather);
-    return visibility_is || !compensation || (random != nullptr && random->biased());
+    return visibility_is || !compensation ||
+           std::visit([](const auto& g) { return g.biased(); }, gather);
   }
 
   std::string_view without_lengths() const {

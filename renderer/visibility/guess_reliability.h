@@ -63,6 +63,13 @@ class GuessReliability {
   const float* rates(std::size_t cell) const {
     return rates_.empty() ? nullptr : rates_.data() + cell * codes_;
   }
+  /// The rate of a cell, in (0, 1), for all answers together; 1/2 before the first update().
+  float rate(std::size_t cell) const {
+    Tally all;
+    for (std::size_t i = 0; i < codes_; ++i) all += sums_[cell * codes_ + i];
+    const double n = double(all.tests), visible = all.tests > 0 ? n * all.rate() : 0;
+    return static_cast<float>((visible + 1) / (n + 2));
+  }
   std::size_t codes() const { return codes_; }
 
   /// Adds tallies of consecutive cells from `cell` on, to be used from the next update() on. Called

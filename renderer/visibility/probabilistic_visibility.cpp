@@ -118,7 +118,7 @@ Counters ProbabilisticVisibility::begin(const LightPass& pass) {
   block_cells_.assign(lights.blocks(), 0);
   for (std::size_t b = 0; clusters_ && b < lights.blocks(); ++b) {
     // Lights of a block are near each other: the first stands for all.
-    block_cells_[b] = std::min(clusters_->of(lights.geometry(b, 0)), clusters_->count());
+    block_cells_[b] = cell(lights.geometry(b, 0));
   }
   return counters;
 }

@@ -41,6 +41,14 @@ class ProbabilisticVisibility : public VisibilityBase {
     std::uint32_t point = 0, place = 0;    // in the tile: the point, and its cell
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
+  static std::uint32_t cell(const At& at) { return at.cell; }
+  std::uint32_t cell(const VplGeometry& light) const {
+    return clusters_ ? std::min(clusters_->of(light), clusters_->count()) : 0;
+  }
+  std::uint32_t cells() const { return static_cast<std::uint32_t>(cells_); }
+  float rate(std::uint32_t cell, std::size_t block) const {
+    return learns() ? reliability_.rate(pair(cell, block)) : 1;
+  }
   void share(std::span<const ShadingPoint> points, std::span<At> states,
              const IterationContext& context) const;
   void decide(At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const;

@@ -16,6 +16,9 @@ namespace lacuna {
 /// - hides(): whether no light of a block illuminates the point.
 /// - group(), groups(), passes(), begin(), end(): the order of the lights, their division into
 ///   passes, the preparation of each pass, and the end of an iteration.
+/// - cell(), cells(), rate(): the cell of the empty space, below cells(), that a light or a point
+///   lies in, and the rate of visibility learned between the points of a cell and a block of
+///   lights.
 /// - tested(), seen(): what a strategy learns from the rays of its tests.
 /// - clamps_negative(): whether negative pixels become black, which is biased.
 ///
@@ -33,6 +36,10 @@ concept Visibility = Strategy<V> &&
   { k.hides(at, std::size_t{}) } -> std::same_as<bool>;
   { k.group(light) } -> std::convertible_to<LightGroup>;
   { k.groups() } -> std::same_as<std::uint64_t>;
+  { k.cell(at) } -> std::same_as<std::uint32_t>;
+  { k.cell(light) } -> std::same_as<std::uint32_t>;
+  { k.cells() } -> std::same_as<std::uint32_t>;
+  { k.rate(std::uint32_t{}, std::size_t{}) } -> std::same_as<float>;
   { k.passes(lights) } -> std::same_as<std::vector<BlockRange>>;
   { v.begin(pass) } -> std::same_as<Counters>;
   v.end();

@@ -12,6 +12,14 @@ struct VisibilityBase : StrategyBase {
   static std::uint32_t group(const VplGeometry&) { return 0; }
   /// The number of groups: group() is below it, or no_group.
   static std::uint64_t groups() { return 1; }
+  /// The cell of a light or a point, and the rate of visibility, in (0, 1], between the points of a
+  /// cell and the lights of a block.
+  template <class Point>
+  static std::uint32_t cell(const Point&) {
+    return 0;
+  }
+  static std::uint32_t cells() { return 1; }
+  static float rate(std::uint32_t /*cell*/, std::size_t /*block*/) { return 1; }
   /// As a guess (visibility_guess.h): the time of one light, in units of its shadow ray.
   static constexpr float guess_cost = 0;
   /// The ranges of blocks processed one after another; together they are all blocks.

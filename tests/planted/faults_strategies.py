@@ -174,7 +174,7 @@ FAULTS = [
           "const VisibilityBits& stored = visibility_[neighbours.index[j] * blocks_ + block];",
           "const VisibilityBits& stored = visibility_[neighbours.index[j] * blocks_ + (block ^ 1) % blocks_];"),
     Fault("blocks are behind when a part is", "renderer/many_lights/block_bounds.h",
-          "highest = highest + max(p_most, q_most);", "highest = highest + min(p_most, q_most);"),
+          "l.value = l.value + max(p_most, q_most);", "l.value = l.value + min(p_most, q_most);"),
     Fault("a block's lights of two depths", "renderer/many_lights/vpl_set.h",
           "return ends_[std::min(static_cast<std::size_t>(edges), ends_.size() - 1)];",
           "return ends_[std::min(static_cast<std::size_t>(edges) + 1, ends_.size() - 1)];"),

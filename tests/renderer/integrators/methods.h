@@ -202,6 +202,10 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
       [](auto& s) { s.gather = RandomLightsSettings{.interleave = 3}; });
   add("lights_culled_for_cubes", ExactVisibilitySettings{},
       [](auto& s) { s.gather = RandomLightsSettings{.lights = 16, .cull_for = CullFor::cubes}; });
+  add("lights_of_clusters", ProbabilisticVisibilitySettings{}, [](auto& s) {
+    std::get<ProbabilisticVisibilitySettings>(s.visibility).guess = CellsGuessSettings{};
+    s.gather = ClusterLightsSettings{.lights = 16, .nodes = 32};
+  });
   return all;
 }
 
@@ -209,7 +213,9 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
 inline std::vector<Method> approximate_lights(int max_depth, int light_paths = 64) {
   ManyLightsSettings filtered = lit_by(max_depth, light_paths, ExactVisibilitySettings{});
   filtered.gather = RandomLightsSettings{.lights = 16, .filter_radius = 2};
-  std::vector<Method> all{{"lights_filtered", filtered}};
+  ManyLightsSettings cuts = lit_by(max_depth, light_paths, ExactVisibilitySettings{});
+  cuts.gather = LightcutsSettings{};
+  std::vector<Method> all{{"lights_filtered", filtered}, {"lightcuts", cuts}};
   for_each_choice(VisibilitySettings{}, [&]<class S>(const S& s) {
     if constexpr (requires { S::biased; }) {
       all.push_back({"lights_" + std::string(S::name), lit_by(max_depth, light_paths, s)});

@@ -125,11 +125,10 @@ class LitScene {
 template <class Visibility>
 std::vector<double> gathered(const LitScene& lit, const IterationContext& context,
                              const Visibility& visibility, std::span<const ShadingPoint> points,
-                             std::uint64_t* tests = nullptr, VplSampler* sampler = nullptr) {
+                             std::uint64_t* tests = nullptr, const GatheredLights& from = {}) {
   Counters counters;
   std::vector<LightSum> sums(points.size());
-  LightGather<Visibility>(context, lit.terms(), visibility, {sampler})
-      .gather(points, sums, counters);
+  LightGather<Visibility>(context, lit.terms(), visibility, from).gather(points, sums, counters);
   std::vector<double> values;
   for (const LightSum& s : sums) {
     values.push_back(s.value.x);

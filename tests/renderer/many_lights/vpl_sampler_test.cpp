@@ -133,7 +133,7 @@ TEST(VplSampler, OfMoreThanThereAreIsAll) {
     const ExactVisibility exact{{}};
     VplSampler sampler(lit.terms(), {.lights = 1 << 20});
     const auto all = gathered(lit, lit.context(1), exact, points);
-    const auto sampled = gathered(lit, lit.context(1), exact, points, nullptr, &sampler);
+    const auto sampled = gathered(lit, lit.context(1), exact, points, nullptr, {&sampler});
     for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(sampled[i], all[i], 1e-12 * all[i]);
     EXPECT_GT(sampler.culled(), 0);
     EXPECT_LT(sampler.culled(), 1);
