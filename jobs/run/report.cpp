@@ -122,6 +122,7 @@ OrderedJson threads(const ThreadPool& pool) {
   OrderedJson sections = OrderedJson::object();
   for (const auto& [name, times] : pool.log().sections()) {
     if (times.serial + times.loops == 0) continue;
+    if (name == reference_section) continue;  // another job, with its own threads and report
     const double waited = times.waiting(pool.threads());
     serial += times.serial;
     waiting += waited;

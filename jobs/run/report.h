@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "analysis/artefacts/record.h"
 #include "jobs/run/choice.h"
@@ -9,6 +10,9 @@
 #include "renderer/film/pareto_tail.h"
 
 namespace lacuna {
+
+/// Section of the work in which an `auto` reference is made. Not in the report: it is another job's.
+inline constexpr std::string_view reference_section = "reference";
 
 /// The input of a job's report.
 struct ReportInput {

@@ -115,6 +115,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   if (!spec.reference.empty()) {
     running.phase("reference");
     const ScopedSeconds timed(phases["reference"]);
+    const WorkSection section(*prepared.pool, reference_section);
     reference = job_reference(folder, spec, prepared, context);
     if (!reference) return Outcome::interrupted;
     if (spec.reference != "auto") {

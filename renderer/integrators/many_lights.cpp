@@ -2,10 +2,9 @@
 
 #include "base/parallel/spares.h"
 #include "renderer/core/passes.h"
+#include "renderer/many_lights/eye_pass.h"
 #include "renderer/many_lights/light_filter.h"
 #include "renderer/many_lights/light_gather.h"
-#include "renderer/path/direct_light.h"
-#include "renderer/path/emitter_selection.h"
 #include "renderer/path/light_pass.h"
 #include "renderer/settings/gather_settings.h"
 #include "renderer/settings/many_lights_settings.h"
@@ -166,7 +165,10 @@ class ManyLights final : public Integrator {
   }
 
   struct Part;
-  class TilePass;
+  void render(const Tile& tile, const IterationContext& context, const Gathering& with, Part& part,
+              Image& image, Counters& counters) const;
+  void gather_at_points(const IterationContext& context, const Gathering& with, Part& part,
+                        Counters& counters) const;
   Counters gather(const IterationContext& context, const Gathering& with, Image& image) const;
 
   Counters add_filtered(const IterationContext& context, const LightFilter& filter,
@@ -232,170 +234,54 @@ class ManyLights final : public Integrator {
 /// Working memory of a tile.
 template <Visibility V>
 struct ManyLights<V>::Part {
-  /// A contribution of next event estimation, pending its shadow ray.
-  struct Direct {
-    Rgb value;
-    std::uint32_t path;
-    int edges;
-  };
-
-  EyeBatch batch;
+  VplEyePass::Memory eye;
   LightGather<V> gather;
-  std::array<int, EyeBatch::size> shaded = {};  ///< edges to the shading point; 0: none yet
-  std::array<LightSum, EyeBatch::size> sums = {};
-  ShadowQueue<Direct> shadows = {};
-  std::vector<ShadingPoint> points = {};
-  std::vector<std::size_t> paths = {};  ///< of each of `points`
+  std::array<LightSum, EyeBatch::size> sums = {};  ///< of each path
   std::vector<LightSum> of_points = {};
 };
 
-/// Renders the eye paths of a tile: emission, direct light, the virtual lights at the shading
-/// points, and by path tracing the light that virtual lights do not give.
+/// Renders the eye paths of a tile, and the virtual lights at their shading points.
 template <Visibility V>
-class ManyLights<V>::TilePass {
- public:
-  TilePass(const ManyLights& integrator, const IterationContext& context, const Gathering& with,
-           Part& part, Counters& counters)
-      : integrator_(integrator),
-        settings_(integrator.settings_),
-        context_(context),
-        with_(with),
-        part_(part),
-        batch_(part.batch),
-        counters_(counters),
-        direct_(context.scene, integrator.guide_, true, EmitterChoice::power),
-        selection_(direct_.next_event(), direct_.active(), settings_.max_depth, batch_) {}
-
-  void render(const Tile& tile, Image& image) {
-    part_.shaded.fill(0);
-    part_.sums.fill({});
-    start_paths(context_, image, tile, batch_);
-    if (with_.lights.range.is_first()) counters_.samples += batch_.states.size();
-    trace_paths();
-    gather();
-    add(image);
-  }
-
- private:
-  /// Adds emission or direct light, of a path of `edges` edges, to the pixel of path `i`.
-  void contribute(std::size_t i, int edges, const Rgb& value) {
-    batch_.radiance[i] += value;
-    if (with_.lights.range.is_first()) context_.light.add(batch_.pixels[i], edges, 0, value);
-  }
-
-  void trace_paths() {
-    Walk walk(context_.scene, integrator_.guide_,
-              {.max_depth = settings_.max_depth,
-               .roulette_depth = settings_.roulette_depth,
-               .packets = true},
-              counters_);
-    walk.trace_paths(
-        batch_.states, [this](std::size_t i, int depth) { return visit(i, depth); }, selection_);
-    if (!with_.lights.range.is_first()) {
-      part_.shadows = {};
-      batch_.radiance.fill(Rgb(0, 0, 0));
-      return;
+void ManyLights<V>::render(const Tile& tile, const IterationContext& context, const Gathering& with,
+                           Part& part, Image& image, Counters& counters) const {
+  VplEyePass({settings_, least_alpha_, guide_, with.terms, with.lights.range.is_first()}, context,
+             part.eye, counters)
+      .trace(tile, image);
+  part.sums.fill({});
+  gather_at_points(context, with, part, counters);
+  const EyeBatch& batch = part.eye.batch;
+  const double lights = static_cast<double>(std::max<std::size_t>(1, with.terms.lights().size()));
+  for (std::size_t i = 0; i < batch.states.size(); ++i) {
+    const std::uint32_t pixel = batch.pixels[i];
+    const V3d value = V3d(batch.radiance[i]) + part.sums[i].value;
+    const bool negative = put(image.pixels[pixel], value, counters);
+    if (tests_layer_ >= 0) {
+      const double share = static_cast<double>(part.sums[i].tests) / lights;
+      layer(context, tests_layer_).pixels[pixel] += Rgb(static_cast<float>(share));
     }
-    part_.shadows.flush(context_.scene.rays(), counters_, [&](const typename Part::Direct& d) {
-      contribute(d.path, d.edges, d.value);
+    count_negative(context, pixel, negative);
+  }
+}
+
+/// Gathers the lights at the shading points of a tile.
+template <Visibility V>
+void ManyLights<V>::gather_at_points(const IterationContext& context, const Gathering& with,
+                                     Part& part, Counters& counters) const {
+  const std::vector<ShadingPoint>& points = part.eye.points;
+  part.of_points.assign(points.size(), {});
+  part.gather.gather(points, part.of_points, counters);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    LightSum& sum = part.sums[part.eye.paths[k]] = part.of_points[k];
+    part.gather.for_each_length(k, [&](int edges, const V3d& value) {
+      if (edges > points[k].edges) return;  // not gathered
+      context.light.add(points[k].pixel, points[k].depth + 1 + edges, 0, Rgb(value));
     });
-  }
-
-  /// Visits a vertex of eye path `i`; false if the path ends.
-  bool visit(std::size_t i, int depth) {
-    Vertex& v = batch_.vertex(i, depth);
-    const bool first = part_.shaded[i] == 0;
-    const Vertex& before = batch_.vertex(i, depth - 1);
-    // Virtual lights also sample this edge, except for the part above the bound.
-    const bool shared = !first && depth == part_.shaded[i] + 1 && !before.delta;
-    if (shared && integrator_.by_lights()) {
-      contribute(i, depth, emitted(v) * missing(before, v));
-    } else {
-      contribute(i, depth, direct_.hit(v, before, depth));
-    }
-    if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
-    const bool lit_by_lights = v.bsdf->is_vpl_receiver(integrator_.least_alpha_);
-    if (!first && !settings_.compensation) return false;
-    if (first && lit_by_lights) {
-      part_.shaded[i] = depth;
-      if (!with_.lights.range.is_first()) return false;
-    } else if (shared && lit_by_lights) {
-      const float weight = missing(before, v);
-      if (weight == 0) return false;
-      v.throughput *= weight;
-      batch_.states[i].throughput *= weight;
-    }
-    if (v.bsdf->connectible() && direct_.active() &&
-        !(first && lit_by_lights && integrator_.by_lights())) {
-      direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
-                     [&](const Ray& ray, const Rgb& value, const DirectLight::Sample&) {
-                       part_.shadows.add(ray, {value, static_cast<std::uint32_t>(i), depth + 1});
-                     });
-    }
-    return settings_.compensation || !integrator_.by_lights() || !lit_by_lights;
-  }
-
-  /// The share of the light from `to` that the bound of the geometric term removes.
-  float missing(const Vertex& at, const Vertex& to) const {
-    if (to.kind == Vertex::Kind::background) return 0;
-    return 1 - with_.terms.share(at, to, to.wp);
-  }
-  Rgb emitted(const Vertex& v) const {
-    const std::optional<EmitterPoint> e = emitter_at(context_.scene, v);
-    return e ? v.throughput * e->emission : Rgb(0, 0, 0);
-  }
-
-  /// Gathers the lights at the shading points.
-  void gather() {
-    part_.points.clear();
-    part_.paths.clear();
-    for (std::size_t i = 0; i < batch_.states.size(); ++i) {
-      const int depth = part_.shaded[i];
-      if (depth == 0 || depth >= settings_.max_depth) continue;
-      part_.points.emplace_back(batch_.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
-                                batch_.pixels[i]);
-      part_.paths.push_back(i);
-    }
-    part_.of_points.assign(part_.points.size(), {});
-    part_.gather.gather(part_.points, part_.of_points, counters_);
-    for (std::size_t k = 0; k < part_.points.size(); ++k) {
-      LightSum& sum = part_.sums[part_.paths[k]] = part_.of_points[k];
-      part_.gather.for_each_length(k, [&](int edges, const V3d& value) {
-        if (edges > part_.points[k].edges) return;  // not gathered
-        context_.light.add(part_.points[k].pixel, part_.points[k].depth + 1 + edges, 0, Rgb(value));
-      });
-      if (with_.filter != nullptr) {
-        with_.filter->add(part_.points[k], sum.value);
-        sum.value = V3d(0, 0, 0);  // add_filtered() adds it when all pixels have been gathered
-      }
+    if (with.filter != nullptr) {
+      with.filter->add(points[k], sum.value);
+      sum.value = V3d(0, 0, 0);  // add_filtered() adds it when all pixels have been gathered
     }
   }
-
-  void add(Image& image) {
-    const double lights =
-        static_cast<double>(std::max<std::size_t>(1, with_.terms.lights().size()));
-    for (std::size_t i = 0; i < batch_.states.size(); ++i) {
-      const std::uint32_t pixel = batch_.pixels[i];
-      const V3d value = V3d(batch_.radiance[i]) + part_.sums[i].value;
-      const bool negative = integrator_.put(image.pixels[pixel], value, counters_);
-      if (integrator_.tests_layer_ >= 0) {
-        const double share = static_cast<double>(part_.sums[i].tests) / lights;
-        layer(context_, integrator_.tests_layer_).pixels[pixel] += Rgb(static_cast<float>(share));
-      }
-      integrator_.count_negative(context_, pixel, negative);
-    }
-  }
-
-  const ManyLights& integrator_;
-  const ManyLightsSettings& settings_;
-  const IterationContext& context_;
-  const Gathering& with_;
-  Part& part_;
-  EyeBatch& batch_;
-  Counters& counters_;
-  DirectLight direct_;
-  EmitterSelection selection_;
-};
+}
 
 /// Renders all eye paths.
 template <Visibility V>
@@ -404,13 +290,12 @@ Counters ManyLights<V>::gather(const IterationContext& context, const Gathering&
   const Tiling tiling(image, batch_side);
   Spares<Part> parts;
   const auto make = [&] {
-    return std::make_unique<Part>(EyeBatch(settings_.max_depth),
+    return std::make_unique<Part>(VplEyePass::Memory(settings_.max_depth),
                                   LightGather<V>(context, with.terms, visibility_, with.lights));
   };
   return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
-    parts.with(make, [&](Part& part) {
-      TilePass(*this, context, with, part, count).render(tiling.tile(i), image);
-    });
+    parts.with(make,
+               [&](Part& part) { render(tiling.tile(i), context, with, part, image, count); });
   });
 }
 

@@ -7,7 +7,7 @@ DOM = ("tests/web/dom.test.mjs",)
 LIST = ("tests/web/list.test.mjs",)
 PAGE = ("tests/web/page.test.mjs",)
 PICTURES = ("tests/web/pictures.test.mjs",)
-VIEWER = ("tests/web/viewer.test.mjs",)
+VIEWER = ("tests/web/viewer.test.mjs", "tests/web/viewer_pairs.test.mjs")
 ANSWERS = ("tests/web/answers.test.mjs",)
 
 FAULTS = [

@@ -1,7 +1,7 @@
 // The service, its renderers, or both are killed at any moment, again and again, while jobs are posted, cancelled, held
 // and extended: no job that was accepted is lost or doubled, none that was cancelled is rendered, no file is half-written,
 // and the pictures have the bits of jobs that nobody disturbed. So with the runs of a sweep, of the service and of `lacuna
-// sweep`. LACUNA_KILLS: rounds (5 in a quick run, 300 in a long one).
+// sweep`. LACUNA_KILLS: rounds (3 in a quick run, 300 in a long one).
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import fs from "node:fs";
@@ -11,7 +11,7 @@ import { setTimeout as pause } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
 import { binary, folders, Service, until } from "../server/service.mjs";
 
-const rounds = Number(process.env.LACUNA_KILLS ?? 5);
+const rounds = Number(process.env.LACUNA_KILLS ?? 3);
 const lacuna = path.join(path.dirname(binary), "lacuna");
 const scenes = path.join(path.dirname(fileURLToPath(import.meta.url)), "../../jobs/scenes");
 const ends = ["done", "failed", "cancelled"];

@@ -2,57 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import {
-  coloursOf, eventually, frames as drawn, giveGraphicsBack, longestTask, ready, screenshot, takeGraphics,
-} from "./browser.mjs";
-import { layerFiles } from "./layers.mjs";
+import { eventually, giveGraphicsBack, longestTask, ready, screenshot, takeGraphics } from "./browser.mjs";
 import { mock, open, origin, page } from "./stage.mjs";
-
-const job = "20260131-101400-cornell";
-const other = "20260131-101500-shallow";
-const old = "20260131-101900-running";
-const rgb = ["R", "G", "B"];
-
-/// Four by two pixels: the estimate is the reference plus (x - 1) / 8 in every channel.
-const small = (scale = 1) => layerFiles(4, 2, [
-  { name: "", channels: rgb, scale, pixel: (x, y) => [1, 2, 3].map((c) => scale * (c * (y + 1) / 8 + (x - 1) / 8)) },
-  { name: "depth", channels: ["Z"], pixel: (x, y) => [x + 4 * y] },
-  { name: "reference", channels: rgb, scale, pixel: (x, y) => [1, 2, 3].map((c) => scale * c * (y + 1) / 8) },
-]);
-
-const stage = ".stage[data-shown]";
-const address = (query = "") => `/#/job/${job}${query}`;
-
-async function openViewer(query, options) {
-  await open(address(query), options);
-  await page.waitForSelector(stage);
-}
-const shows = (key) => page.waitForSelector(`.stage[data-shown="${key}"]`);
-const readout = () => page.locator(".readout").innerText();
-const frames = () => drawn(page);
-/// Moves the pointer to the middle of the pixel (x, y) of a picture of `width` pixels that fits.
-async function pointAt(x, y, width = 4) {
-  await page.locator(stage).scrollIntoViewIfNeeded();
-  const box = await page.locator(stage).boundingBox();
-  const zoom = box.width / width;
-  await page.mouse.move(box.x + (x + 0.5) * zoom, box.y + (y + 0.5) * zoom);
-  await frames();
-}
-/// The colours of pixels of such a picture, beside the values that are printed in them.
-async function pixelColours(pixels, width = 4) {
-  const zoom = (await page.locator(stage).boundingBox()).width / width;
-  await page.mouse.move(0, 0);
-  return coloursOf(page, stage, pixels.map(([x, y]) => ({ u: (x + 0.1) * zoom, v: (y + 0.1) * zoom })));
-}
-const srgb = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * Math.min(1, v) ** (1 / 2.4) - 0.055));
-function like(found, expected) {
-  found.forEach((v, c) => assert.ok(Math.abs(v - expected[c]) <= 1, `${found}, expected ${expected}`));
-}
-/// Waits until a pixel has the colour whose channels are `expected` before sRGB.
-const pixelIs = (x, y, expected) => eventually(async () => {
-  const [found] = await pixelColours([[x, y]]);
-  like(found, expected.map(srgb));
-});
+import {
+  address, frames, job, noProblem, old, openViewer, pixelColours, pixelIs, pointAt, readout, rgb, shows, small, stage,
+} from "./viewer_stage.mjs";
 
 test("the pixel under the pointer tells its true values, whatever the scale", async () => {
   for (const [scale, expected] of [[1, "(2, 1)  R 0.3750  G 0.6250  B 0.8750"],
@@ -298,8 +252,6 @@ test("a layer that cannot be read is said; the picture before it stays", async (
   await page.getByText(/No answer from .* Is lacuna-server running\?/).waitFor();
 });
 
-const noProblem = async () => assert.deepEqual(await page.locator(".problem:visible").allInnerTexts(), []);
-
 test("graphics that were taken away and given back: the picture is there again, as it was asked for meanwhile", async () => {
   mock.update(job, { files: small() });
   await openViewer("?ev=0");
@@ -320,135 +272,5 @@ test("graphics that were taken away and given back: the picture is there again, 
   await pointAt(2, 1);
   assert.equal(await readout(), "(2, 1)  R 0.2500  G 0.5000  B 0.7500");
   await noProblem();
-  assert.deepEqual(page.troubles, []);
-});
-
-/// The other job's estimate is twice this one's.
-function openPair(query, options) {
-  mock.update(job, { files: small() });
-  mock.update(other, { files: layerFiles(4, 2, [
-    { name: "", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 4 + (x - 1) / 4) },
-    { name: "reference", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 8) }]) });
-  return open(`/#/compare?jobs=${job},${other},${old}${query}`, options).then(() => page.waitForSelector(stage));
-}
-
-test("number keys flip pictures at one exposure and one zoom", async () => {
-  await openPair("&ev=0");
-  assert.deepEqual(await page.getByLabel("Show", { exact: true }).locator("option").allInnerTexts(),
-    ["picture", "reference", "signed error", "absolute error", "squared error", "relative squared error"]);
-  await page.locator(stage).focus();
-  await pixelIs(2, 0, [0.25, 0.375, 0.5]);
-  await page.keyboard.press("2");
-  await frames();
-  await pixelIs(2, 0, [0.5, 0.75, 1]);
-  assert.ok(page.url().includes("left=1"));
-  await page.keyboard.press("3");
-  assert.ok(page.url().includes("left=1"), "the third has no layers");
-  await page.getByText("No layers.json: image.png").waitFor();
-  assert.deepEqual(page.troubles, []);
-});
-
-test("a picture of another size is shown apart, and it is said", async () => {
-  mock.update(job, { files: small() });
-  await open(`/#/compare?jobs=${job},${other}`);
-  await page.getByText("Size differs from the first: image.png").waitFor();
-  await page.waitForSelector(stage);
-  await page.waitForFunction(() => document.querySelectorAll(".gallery img").length === 1);
-  assert.deepEqual(page.troubles, []);
-});
-
-test("two pictures are split by a line that a drag moves", async () => {
-  await openPair("&ev=0&mode=split");
-  await pixelIs(2, 0, [0.5, 0.75, 1]);
-  await pixelIs(1, 0, [0.125, 0.25, 0.375]);
-  const box = await page.locator(stage).boundingBox();
-  await page.mouse.move(box.x + box.width / 2, box.y + 20);
-  await page.mouse.down();
-  await page.mouse.move(box.x + 0.8 * box.width, box.y + 20);
-  await page.mouse.up();
-  await pixelIs(2, 0, [0.25, 0.375, 0.5]);
-  assert.ok(page.url().includes("split=0.8"));
-  for (let i = 0; i < 7; i += 1) await page.locator(stage).press(",");
-  await pixelIs(2, 0, [0.5, 0.75, 1]);
-  await screenshot(page, "compare-split");
-  assert.deepEqual(page.troubles, []);
-});
-
-test("two pictures are subtracted, and the address holds how", async () => {
-  await openPair("&mode=difference");
-  await pointAt(3, 1);
-  assert.equal(await readout(), "(3, 1)  0.7500\nx: R 1.000  G 1.500  B 2.000\nr: R 0.5000  G 0.7500  B 1.000");
-  await page.getByLabel("by", { exact: true }).selectOption("squared");
-  await page.getByText("squared error, (x − r)²; mean").waitFor();
-  assert.ok(page.url().includes("mode=difference") && page.url().includes("by=squared"));
-  await page.reload();
-  await page.getByText("squared error, (x − r)²; mean").waitFor();
-  assert.deepEqual(page.troubles, []);
-});
-
-test("layers that were replaced meanwhile are all read again", async () => {
-  mock.update(job, { files: small() });
-  await openViewer();
-  // The same layout and so the same layers.json: only the ETag of layers.half tells.
-  const twice = layerFiles(4, 2, [
-    { name: "", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 8 + 0.5) },
-    { name: "depth", channels: ["Z"], pixel: (x, y) => [x + 4 * y] },
-    { name: "reference", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 8) }]);
-  assert.equal(twice["layers.json"], mock.find(job).files["layers.json"]);
-  mock.update(job, { files: twice });
-  await page.getByLabel("Show", { exact: true }).selectOption("error-signed");
-  await shows("error-signed");
-  assert.match(await page.locator(".bar-title").innerText(), /mean 0\.500/);
-  // One that the index does not fit yet is not shown.
-  mock.update(job, { files: { "layers.half": Buffer.alloc(10) } });
-  await page.getByLabel("Show", { exact: true }).selectOption("depth");
-  await page.getByText("These layers changed while they were read.").waitFor();
-  assert.deepEqual(page.troubles.filter((t) => !/status of 416/.test(t)), []);
-});
-
-test("one crop of all jobs at one exposure, chosen by a drag or by keys, and in the address", async () => {
-  await openPair("&ev=0&mode=crops");
-  await page.waitForSelector(".crops canvas");
-  assert.equal(await page.locator(".crops canvas").count(), 2);
-  await page.locator(stage).scrollIntoViewIfNeeded();
-  const box = await page.locator(stage).boundingBox();
-  const at = (x, y) => [box.x + (x * box.width) / 4, box.y + (y * box.height) / 2];
-  await page.mouse.move(...at(2.1, 0.1));
-  await page.mouse.down();
-  await page.mouse.move(...at(3.9, 0.9));
-  await page.mouse.up();
-  await frames();
-  await page.getByText("2 × 1 pixels at (2, 0), 128 times as large.").waitFor();
-  assert.ok(page.url().includes("crop=2,0,2,1"), page.url());
-  const places = [{ u: 5, v: 5 }, { u: 250, v: 5 }];
-  const cropsAre = (gain) => eventually(async () => {
-    for (const [i, factor] of [[1, gain], [2, 2 * gain]]) {
-      const [left, right] = await coloursOf(page, `.crops figure:nth-child(${i}) canvas`, places);
-      like(left, [0.25, 0.375, 0.5].map((v) => srgb(factor * v)));
-      like(right, [0.375, 0.5, 0.625].map((v) => srgb(factor * v)));
-    }
-  });
-  await cropsAre(1);
-  // Both, the picture's and the crops', are taken away; what is asked for meanwhile is seen afterwards.
-  assert.equal(await takeGraphics(page), 2);
-  await page.locator(stage).press("E");
-  await frames();
-  await giveGraphicsBack(page);
-  await cropsAre(Math.SQRT1_2);
-  await noProblem();
-  await page.locator(stage).press("e");
-  await cropsAre(1);
-  assert.match(await page.locator(".crops figcaption").first().innerText(), /30\.0\ss, rmse 0\.0138/);
-  await page.getByText("Of equal time: the jobs' last pictures").waitFor();
-  await page.locator(stage).press("ArrowLeft");
-  await page.locator(stage).press("ArrowDown");
-  await page.getByText("2 × 1 pixels at (1, 1)").waitFor();
-  await page.locator(stage).press(".");
-  await page.getByText("3 × 2 pixels at (1, 0)").waitFor();
-  await screenshot(page, "crops");
-  mock.find(other).progress.seconds = 33;
-  await page.reload();
-  await page.getByText("Not of equal time: the jobs' last pictures, after 30.0\u202fs to 33.0\u202fs of rendering.").waitFor();
-  assert.ok(page.url().includes("crop=1,0,3,2"));
   assert.deepEqual(page.troubles, []);
 });

@@ -138,6 +138,8 @@ TEST_F(RunJob, AutoReferenceIsMadeOnceAndKnowsItsNoise) {
   const json errors = report(first).at("errors");
   EXPECT_GT(errors.at("reference").at("own_rmse"), 0);
   EXPECT_GT(errors.at("rmse"), errors.at("reference").at("own_rmse"));
+  EXPECT_FALSE(report(first).at("threads").at("sections").contains("reference"))
+      << "the time of another job";
   s.seed = 2;
   run(create(s, "second"));
   EXPECT_EQ(references().size(), 1U);

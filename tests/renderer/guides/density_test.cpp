@@ -10,6 +10,8 @@
 namespace lacuna {
 namespace {
 
+constexpr int density_draws = 10000;  // of each guide at each vertex
+
 using test::DensityCheck;
 using test::GuidedScene;
 using test::PathScene;
@@ -90,11 +92,11 @@ TEST_P(Density, IsThatOfItsSamples) {
       // Cells are smallest where most is drawn.
       const std::optional<V3f> pole = draw();
       const DensityCheck c =
-          test::density_check(draw, density, 20000, rng, pole.value_or(V3f(0, 0, 1)));
+          test::density_check(draw, density, density_draws, rng, pole.value_or(V3f(0, 0, 1)));
       EXPECT_GT(c.p, level) << "integral " << c.integral << " +- " << c.integral_error << ", "
                             << c.failed << " of the draws gave none";
       const double off = c.integral + c.failed - 1;
-      const double error = std::hypot(c.integral_error, std::sqrt(c.failed / 20000));
+      const double error = std::hypot(c.integral_error, std::sqrt(c.failed / density_draws));
       EXPECT_LE(std::abs(off), 5 * error + 1e-4) << c.integral << " + " << c.failed;
     }
   }
@@ -148,7 +150,7 @@ TEST_P(Density, WithTheSurfaceIsThatOfItsSamples) {
         const bool scatters = !is_black(v.bsdf->eval(v.wp, w, Transport::radiance));
         return scatters ? guide.pdf(v, v.wp, w, Transport::radiance).value : 0.0F;
       };
-      const DensityCheck c = test::density_check(draw, density, 20000, rng, v.surface.ng);
+      const DensityCheck c = test::density_check(draw, density, density_draws, rng, v.surface.ng);
       EXPECT_GT(c.p, level) << "integral " << c.integral << " +- " << c.integral_error << ", "
                             << c.failed << " of the draws gave none";
       EXPECT_LE(c.integral, 1 + 5 * c.integral_error + 1e-4);
