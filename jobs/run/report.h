@@ -11,7 +11,8 @@
 
 namespace lacuna {
 
-/// Section of the work in which an `auto` reference is made. Not in the report: it is another job's.
+/// Section of the work in which an `auto` reference is made. Not in the report: it is another
+/// job's.
 inline constexpr std::string_view reference_section = "reference";
 
 /// The input of a job's report.
