@@ -17,8 +17,8 @@ struct FigureCells {
 
 /// Opens what a figure's file names. `folder`: of the file, for relative paths; none: only ids in
 /// the data folder are allowed. Jobs of one method that differ in label and seed alone are the runs
-/// of one cell; the settings of the cells are keys of jobs that tell pictures apart, and what the
-/// file names. Throws BadJob: no such sweep, no such jobs.
+/// of one cell; the settings of a cell are the keys of jobs in which pictures differ, and those
+/// that the file names. Throws BadJob: no such sweep, no such jobs.
 FigureCells open_cells(const FigureSpec& spec, const std::optional<std::filesystem::path>& folder);
 
 }  // namespace lacuna

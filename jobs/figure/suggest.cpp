@@ -7,7 +7,7 @@
 #include <set>
 
 #include "jobs/figure/figure_source.h"
-#include "jobs/report/telling_crops.h"
+#include "jobs/report/crop_selection.h"
 
 namespace lacuna {
 namespace {
@@ -67,7 +67,7 @@ class Suggestion {
     found.sweep = sweep_.dir().string();
     const FigureSource source(found, "");
     if (source.rows().size() != spec_.scenes.size()) {
-      throw BadJob({{"", fmt::format("{}: settings alone do not tell its pictures apart",
+      throw BadJob({{"", fmt::format("{}: some of its pictures do not differ in their settings",
                                      sweep_.dir().string())}});
     }
     bool referenced = true;
@@ -118,7 +118,7 @@ class Suggestion {
   bool add_crops(const FigureSource& source, std::size_t row) {
     const auto [width, height] = source.rows()[row].resolution;
     const int side = std::max(std::min({width, height, 16}), std::min(width, height) / 4);
-    TellingCrops crops({width, height}, side);
+    CropSelection crops({width, height}, side);
     const auto reference = source.reference(row);
     for (std::size_t m = 0; m < spec_.methods.size(); ++m) {
       const auto picture = source.picture(row, m);

@@ -5,8 +5,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "jobs/report/crop_selection.h"
 #include "jobs/report/replicate_bias.h"
-#include "jobs/report/telling_crops.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/film/preview.h"
 #include "renderer/images/image_read.h"
@@ -96,7 +96,7 @@ class PictureReader {
   SweepPictures& out_;
   std::optional<Reference> reference_;
   std::map<std::size_t, std::size_t> firsts_;  // run, by cell
-  TellingCrops crops_;
+  CropSelection crops_;
   int width_;
 };
 

@@ -17,8 +17,8 @@ struct CellCrop {
   std::string png;
 };
 
-/// The same crop, at the same exposure, of all cells that estimate one picture: that of at most
-/// 96 x 96 pixels that tells the cells apart (TellingCrops).
+/// The same crop, at the same exposure, of all cells that estimate one picture: at most
+/// 96 x 96 pixels, where the errors of the cells differ most (CropSelection).
 struct PictureCrops {
   std::size_t picture;  ///< index into Answers::pictures
   int x = 0, y = 0, width = 0, height = 0;

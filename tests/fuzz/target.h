@@ -30,7 +30,7 @@ struct ReplayTarget {
 #else
 #define LACUNA_FUZZ_TARGET(name) \
   extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
-#define LACUNA_FUZZ_MUTATOR(name)                                                      \
-  extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, \
-                                                 std::size_t max_size, unsigned seed)
+#define LACUNA_FUZZ_MUTATOR(name)                 \
+  extern "C" std::size_t LLVMFuzzerCustomMutator( \
+      std::uint8_t* data, std::size_t size, std::size_t max_size, [[maybe_unused]] unsigned seed)
 #endif

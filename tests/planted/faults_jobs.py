@@ -76,6 +76,6 @@ FAULTS = [
           "static_cast<double>(n_ * (n_ - 1))", "static_cast<double>(n_ * n_)", ("test_report",)),
     Fault("seeds of a figure's jobs are cells of their own", "jobs/figure/figure_cells.cpp",
           'std::to_array<std::string_view>({"label", "seed"})', 'std::to_array<std::string_view>({"label"})', ("test_figure",)),
-    Fault("crops are where errors are largest", "jobs/report/telling_crops.cpp",
+    Fault("crops are where errors are largest", "jobs/report/crop_selection.cpp",
           "(errors_.size() > 1 ? (*low)[i] : 0)", "(errors_.size() > 1 ? 0 : 0 * (*low)[i])", ("test_report",)),
 ]

@@ -1,4 +1,4 @@
-#include "jobs/report/telling_crops.h"
+#include "jobs/report/crop_selection.h"
 
 #include <gtest/gtest.h>
 
@@ -20,9 +20,9 @@ std::vector<double> with_square(const PixelRect& at, double value) {
 
 constexpr PixelRect left{8, 8, square, square}, right{40, 24, square, square};
 
-TEST(TellingCrops, AreWhereErrorsDifferAndNotWhereTheyAreLargest) {
+TEST(CropSelection, AreWhereErrorsDifferAndNotWhereTheyAreLargest) {
   const std::vector<double> reference(3 * wide * high, 1.0);
-  TellingCrops crops({wide, high}, square);
+  CropSelection crops({wide, high}, square);
   // At the left both methods are far off, at the right only one is, and less.
   std::vector<double> first = with_square(left, 5), second = first;
   const std::vector<double> at_right = with_square(right, 2);
@@ -31,14 +31,14 @@ TEST(TellingCrops, AreWhereErrorsDifferAndNotWhereTheyAreLargest) {
   crops.add(second, reference);
   EXPECT_EQ(crops.choose(1), std::vector<PixelRect>{right});
 
-  TellingCrops alone({wide, high}, square);
+  CropSelection alone({wide, high}, square);
   alone.add(first, reference);
   EXPECT_EQ(alone.choose(1), std::vector<PixelRect>{left}) << "of one method, the largest";
   EXPECT_EQ(alone.choose(2), (std::vector<PixelRect>{left, right}));
 }
 
-TEST(TellingCrops, ShareNoPixels) {
-  TellingCrops crops({wide, high}, square);
+TEST(CropSelection, ShareNoPixels) {
+  CropSelection crops({wide, high}, square);
   crops.add(with_square(left, 2), std::vector<double>(3 * wide * high, 1.0));
   const std::vector<PixelRect> found = crops.choose(4);
   ASSERT_EQ(found.size(), 4u);
@@ -52,8 +52,8 @@ TEST(TellingCrops, ShareNoPixels) {
   }
 }
 
-TEST(TellingCrops, WithoutAReferenceCompareWithTheFirstPicture) {
-  TellingCrops crops({wide, high}, square);
+TEST(CropSelection, WithoutAReferenceCompareWithTheFirstPicture) {
+  CropSelection crops({wide, high}, square);
   crops.add(std::vector<double>(3 * wide * high, 1.0), {});
   ASSERT_EQ(crops.choose(2).size(), 1u) << "nothing is known yet: the middle";
   EXPECT_TRUE(is_inside(crops.choose(2).front(), wide, high));

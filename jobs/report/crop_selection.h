@@ -7,11 +7,12 @@
 
 namespace lacuna {
 
-/// Finds the parts of a picture that tell methods apart, one method's picture after the other.
-class TellingCrops {
+/// Selects the crops of a picture in which the errors of methods differ most. Pictures are added
+/// one after the other.
+class CropSelection {
  public:
   /// Of crop_grid() with this side, in pixels.
-  TellingCrops(const std::array<int, 2>& resolution, int side);
+  CropSelection(const std::array<int, 2>& resolution, int side);
 
   /// Adds a method's picture, of three values for each pixel. `reference`: likewise, the same for
   /// all; empty: the methods are compared with the first.

@@ -1,4 +1,4 @@
-#include "jobs/report/telling_crops.h"
+#include "jobs/report/crop_selection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,10 @@ double relative_error(const std::vector<double>& x, const std::vector<double>& r
 
 }  // namespace
 
-TellingCrops::TellingCrops(const std::array<int, 2>& resolution, int side)
+CropSelection::CropSelection(const std::array<int, 2>& resolution, int side)
     : resolution_(resolution), grid_(crop_grid(resolution[0], resolution[1], side, side)) {}
 
-void TellingCrops::add(const std::vector<double>& picture, const std::vector<double>& reference) {
+void CropSelection::add(const std::vector<double>& picture, const std::vector<double>& reference) {
   if (reference.empty() && first_.empty()) {
     first_ = picture;
     return;
@@ -38,7 +38,7 @@ void TellingCrops::add(const std::vector<double>& picture, const std::vector<dou
   }
 }
 
-std::vector<PixelRect> TellingCrops::choose(std::size_t count) const {
+std::vector<PixelRect> CropSelection::choose(std::size_t count) const {
   if (errors_.empty()) return {grid_[grid_.size() / 2]};
   std::vector<double> spread;
   for (std::size_t i = 0; i < grid_.size(); ++i) {
