@@ -70,10 +70,11 @@ class ManyLights final : public Integrator {
                   {settings_.max_depth - 1, by_lights(), least_alpha_});
     Counters counters;
     if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
-    lights.arrange([this](const VplGeometry& p) -> LightGroup {
+    const auto cell_group = [this](const VplGeometry& p) -> LightGroup {
       const LightGroup group = visibility_.group(p);
       return clusters() ? group * visibility_.cells() + visibility_.cell(p) : group;
-    });
+    };
+    lights.arrange(cell_group, context.pool);
     lights_ = static_cast<double>(lights.size());
     passes.begin("visibility", seconds_.visibility);
     const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
@@ -84,12 +85,17 @@ class ManyLights final : public Integrator {
       cubes.emplace(lights, *scene_cubes_, static_cast<float>(random()->cutoff), context.pool);
       leaves_culled_ = cubes->culled();
     }
-    if (random()) sampler.emplace(terms, *random(), cubes ? &*cubes : nullptr);
     if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
     std::optional<VplTree> tree;
     std::optional<ClusterSampler> cluster_sampler;
     std::optional<Lightcuts> cuts;
-    if (clusters()) cluster_sampler.emplace(terms, tree.emplace(lights, context), *clusters());
+    GatheredLights gathered;
+    if (random()) {
+      gathered.from = &sampler.emplace(terms, *random(), cubes ? &*cubes : nullptr);
+    } else if (clusters()) {
+      tree.emplace(lights, context.pool);
+      gathered.from = &cluster_sampler.emplace(terms, *tree, *clusters());
+    }
     for (const BlockRange& range : visibility_.passes(lights)) {
       passes.begin("visibility", seconds_.visibility);
       if (lights.size() > 0) {
@@ -101,13 +107,13 @@ class ManyLights final : public Integrator {
                                        .sampled = sampled(lights.size()),
                                        .equal = !clusters() && !lightcuts()});
       }
+      gathered.range = range;
+      if (lightcuts()) {
+        tree.emplace(lights, context.pool, range);
+        gathered.from = &cuts.emplace(terms, *tree, *lightcuts(), context);
+      }
       passes.begin("eye paths", seconds_.eye);
-      if (lightcuts()) cuts.emplace(terms, tree.emplace(lights, context, range), *lightcuts());
-      const auto given = [](auto& o) { return o ? &*o : nullptr; };
-      counters += gather(
-          context,
-          {terms, {given(sampler), range, given(cluster_sampler), given(cuts)}, given(filter)},
-          image);
+      counters += gather(context, {terms, gathered, filter ? &*filter : nullptr}, image);
     }
     visibility_.end();
     if (sampler) culled_ = sampler->culled(), culling_tests_ = double(sampler->tests());

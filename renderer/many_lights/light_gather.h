@@ -1,5 +1,7 @@
 #pragma once
 
+#include <variant>
+
 #include "renderer/many_lights/cluster_sampler.h"
 #include "renderer/many_lights/lightcuts.h"
 #include "renderer/many_lights/visibility_estimate.h"
@@ -16,12 +18,11 @@ struct LightSum {
   std::uint64_t tests = 0;  ///< lights tested by a shadow ray
 };
 
-/// The virtual lights to gather: all of them, unless one of the pointers is not null.
+struct AllLights {};
+/// The virtual lights to gather: all of them, or those that one of the pointers chooses.
 struct GatheredLights {
-  VplSampler* sampler = nullptr;
-  BlockRange range = {};  ///< only those of these blocks
-  const ClusterSampler* clusters = nullptr;
-  const Lightcuts* cuts = nullptr;  ///< of the lights of the range
+  std::variant<AllLights, VplSampler*, const ClusterSampler*, const Lightcuts*> from = AllLights{};
+  BlockRange range = {};  ///< only those of these blocks; the trees of cuts have no others
 };
 
 /// Sums the contributions of all virtual lights, or of the sampled ones, to the shading points of a
@@ -46,19 +47,7 @@ class LightGather {
     for (const ShadingPoint& p : points) states_.push_back(visibility_.at(p, context_));
     visibility_.share(points, std::span(states_), context_);
     if (by_length_) lengths_.assign(points.size() * length_count(), V3d(0));
-    if (gathered_.sampler != nullptr) {
-      add_samples(gathered_.sampler->sample(points, context_), points, sums, counters);
-    } else if (gathered_.clusters != nullptr) {
-      cells_.clear();
-      for (const auto& state : states_) cells_.push_back(visibility_.cell(state));
-      const auto rate = [this](std::uint32_t c, std::size_t b) { return visibility_.rate(c, b); };
-      add_samples(gathered_.clusters->sample(points, context_, {cells_, rate}), points, sums,
-                  counters);
-    } else if (gathered_.cuts != nullptr) {
-      for (std::size_t i = 0; i < points.size(); ++i) add_cut(points[i], i, sums[i], counters);
-    } else {
-      gather_all(points, sums, counters);
-    }
+    std::visit([&](const auto& from) { add(from, points, sums, counters); }, gathered_.from);
     flush(sums, counters);
   }
 
@@ -86,8 +75,8 @@ class LightGather {
   static constexpr std::size_t largest_queue = 2048;  // rays, which fit the second-level cache
   static constexpr std::size_t blocks_between_stops = 64;
 
-  void gather_all(std::span<const ShadingPoint> points, std::span<LightSum> sums,
-                  Counters& counters) {
+  void add(AllLights, std::span<const ShadingPoint> points, std::span<LightSum> sums,
+           Counters& counters) {
     PointLanes lanes;
     std::array<std::size_t, Lanes::size> ends;  // end of the blocks whose lights reach each point
     std::size_t blocks = 0;
@@ -105,6 +94,24 @@ class LightGather {
     }
   }
 
+  void add(VplSampler* sampler, std::span<const ShadingPoint> points, std::span<LightSum> sums,
+           Counters& counters) {
+    add_samples(sampler->sample(points, context_), points, sums, counters);
+  }
+
+  void add(const ClusterSampler* clusters, std::span<const ShadingPoint> points,
+           std::span<LightSum> sums, Counters& counters) {
+    cells_.clear();
+    for (const auto& state : states_) cells_.push_back(visibility_.cell(state));
+    const auto rate = [this](std::uint32_t c, std::size_t b) { return visibility_.rate(c, b); };
+    add_samples(clusters->sample(points, context_, {cells_, rate}), points, sums, counters);
+  }
+
+  void add(const Lightcuts* cuts, std::span<const ShadingPoint> points, std::span<LightSum> sums,
+           Counters& counters) {
+    for (std::size_t i = 0; i < points.size(); ++i) add_cut(*cuts, points[i], i, sums[i], counters);
+  }
+
   void add_samples(const std::vector<VplSampler::Sample>& samples,
                    std::span<const ShadingPoint> points, std::span<LightSum> sums,
                    Counters& counters) {
@@ -116,13 +123,14 @@ class LightGather {
     }
   }
 
-  void add_cut(const ShadingPoint& at, std::size_t point, LightSum& sum, Counters& counters) {
-    const auto cut = gathered_.cuts->cut(at, [&](std::size_t block, int i, float weight) {
+  void add_cut(const Lightcuts& cuts, const ShadingPoint& at, std::size_t point, LightSum& sum,
+               Counters& counters) {
+    const auto cut = cuts.cut(at, [&](std::size_t block, int i, float weight) {
       return traced(at, {block, point, std::uint64_t{1} << i, weight}, sum, counters);
     });
     for (const Lightcuts::Entry& e : cut) {
       sum.value += e.value;
-      if (by_length_) length(point, gathered_.cuts->edges(e)) += e.value;
+      if (by_length_) length(point, cuts.edges(e)) += e.value;
     }
     if (context_.stop()) throw IterationStopped{};
   }

@@ -4,6 +4,7 @@
 
 #include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/many_lights/vpl_tree.h"
+#include "renderer/path/contexts.h"
 #include "renderer/settings/gather_settings.h"
 
 namespace lacuna {
@@ -15,8 +16,26 @@ namespace lacuna {
 /// methods: biased, because errors below the bounds stay.
 class Lightcuts {
  public:
-  Lightcuts(const VplContributions& terms, const VplTree& tree, const LightcutsSettings& settings)
-      : terms_(terms), tree_(tree), settings_(settings) {}
+  /// `context`: of the random numbers that choose representatives.
+  Lightcuts(const VplContributions& terms, const VplTree& tree, const LightcutsSettings& settings,
+            const IterationContext& context)
+      : terms_(terms), tree_(tree), settings_(settings) {
+    constexpr std::uint64_t path = std::uint64_t{1} << 55;  // no pixel's
+    Rng rng(context.seed, context.iteration, path, Rng::Purpose::gather);
+    for (const VplTree::Node& n : tree.nodes()) {
+      representatives_.push_back(tree.choose(n, rng.next()));
+    }
+    for (std::uint32_t i = 0; i < representatives_.size(); ++i) {
+      const VplTree::Node& n = tree.node(i);
+      if (n.child == 0) continue;
+      const std::uint32_t r = representatives_[i];
+      representatives_[r < tree.node(n.child).end ? n.child : n.child + 1] = r;
+    }
+  }
+
+  /// A light of the node, chosen by probability proportional to intensity. A child has that of its
+  /// parent, if that is one of its lights.
+  std::uint32_t representative(std::uint32_t node) const { return representatives_[node]; }
 
   struct Entry {
     std::uint32_t node;
@@ -38,7 +57,7 @@ class Lightcuts {
     };
     const auto represent = [&](std::uint32_t i) {
       const VplTree::Node& n = tree_.node(i);
-      const std::uint32_t light = n.representative;
+      const std::uint32_t light = representative(i);
       add(i, value(tree_.block(light), tree_.lane(light), n.intensity / tree_.intensity(light)));
     };
     for (const std::uint32_t root : tree_.roots()) {
@@ -54,7 +73,7 @@ class Lightcuts {
       const VplTree::Node& node = tree_.node(parent.node);
       for (const std::uint32_t child : {node.child, node.child + 1}) {
         const VplTree::Node& c = tree_.node(child);
-        if (c.representative != node.representative) {
+        if (representative(child) != representative(parent.node)) {
           represent(child);
         } else {
           add(child, parent.value * double(c.intensity / node.intensity));
@@ -92,6 +111,7 @@ class Lightcuts {
   const VplContributions& terms_;
   const VplTree& tree_;
   LightcutsSettings settings_;
+  std::vector<std::uint32_t> representatives_;  // of each node
 };
 
 }  // namespace lacuna

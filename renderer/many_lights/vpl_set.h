@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <variant>
 #include <vector>
 
+#include "base/parallel/thread_pool.h"
 #include "renderer/many_lights/block_bounds.h"
 #include "renderer/many_lights/lanes.h"
 #include "renderer/path/light_batch.h"
@@ -78,23 +80,14 @@ class VplSet {
     bool emitters;      ///< include vertex 0, the point on an emitter
     float least_alpha;  ///< of surfaces: Bsdf::is_vpl_receiver()
   };
-  VplSet(std::size_t paths, const Choice& choice)
-      : choice_(choice), share_(1.0F / float(paths)), kept_(paths) {}
+  VplSet(std::size_t paths, const Choice& choice);
 
-  /// Stores the lights of path `i` of `batch` as path number `path`. Several threads may store
-  /// different paths at once.
-  void keep(std::size_t path, const LightBatch& batch, std::size_t i) {
-    const bool started = std::min(batch.length(i), choice_.longest) > 0;
-    if (started && choice_.emitters) add(kept_[path], batch.emitter(i));
-    batch.for_each_vertex(i, [&](std::size_t j, int index) {
-      if (index >= choice_.longest) return;
-      const Vertex& v = batch.vertex(j, index);
-      if (v.bsdf->is_vpl_receiver(choice_.least_alpha)) add(kept_[path], v, index);
-    });
-  }
+  /// Stores the lights of path `i` of `batch` as path number `path`: those of a part (light_pass.h)
+  /// in order, parts by several threads at once.
+  void keep(std::size_t path, const LightBatch& batch, std::size_t i);
   /// Sorts the lights into blocks; call it once, after all paths are stored. The order depends only
-  /// on the paths and on `groups`.
-  void arrange(const LightGroups& groups);
+  /// on the paths and on `groups`, which several threads call.
+  void arrange(const LightGroups& groups, const ThreadPool& pool);
 
   std::size_t size() const { return size_; }
   /// Blocks [0, blocks(edges)) contain the lights that are at most `edges` edges from their
@@ -140,12 +133,14 @@ class VplSet {
     float shading_cosine_ratio;
     Rgb rgb;
     float offset;
-    int index;
+    VplGeometry geometry() const { return {x, ng, false}; }
   };
   struct StoredLights {
     std::vector<Diffuse> diffuse, points;
     std::vector<GeneralLight> general;
   };
+  /// The lights of a part of the paths, by index of their vertex.
+  using PartLights = std::vector<StoredLights>;
   struct Block {
     std::size_t first;  // in diffuse_ or general_
     int count;
@@ -153,14 +148,12 @@ class VplSet {
     LightGroup group;
   };
 
-  void add(StoredLights& path, const EmitterPoint& e) const;
-  void add(StoredLights& path, const Vertex& v, int index) const;
-  void arrange_diffuse(const std::vector<Diffuse>& lights, bool points, const LightGroups& groups);
-  void arrange_general(const std::vector<GeneralLight>& lights, const LightGroups& groups);
+  void add(StoredLights& part, const EmitterPoint& e) const;
+  void add(StoredLights& part, const Vertex& v, int index) const;
 
   Choice choice_;
   float share_;
-  std::vector<StoredLights> kept_;
+  std::vector<PartLights> kept_;
   std::vector<DiffuseBlock> diffuse_;
   std::vector<BlockBounds> bounds_;  // of diffuse_
   std::vector<GeneralLight> general_;

@@ -1,6 +1,6 @@
 #include "renderer/many_lights/vpl_tree.h"
 
-#include "renderer/core/rng.h"
+#include "base/parallel/for_each_chunked.h"
 
 namespace lacuna {
 
@@ -28,64 +28,103 @@ VplTree::Item VplTree::item(const VplSet& lights, std::size_t block, int i) {
           false};
 }
 
-VplTree::VplTree(const VplSet& lights, const IterationContext& context, const BlockRange& range)
-    : sums_{0} {
-  std::vector<Item> items;
-  items.reserve(lights.size());
-  std::vector<std::uint32_t> starts;  // of trees
-  for (std::size_t b = 0; b < lights.blocks(); ++b) {
-    first_of_block_.push_back(static_cast<std::uint32_t>(items.size()));
-    for (int i = 0; range.contains(b) && i < lights.count(b); ++i) {
-      Item light = item(lights, b, i);
-      // A light whose estimated intensity is 0 may shine all the same.
-      light.intensity = std::max(light.intensity, std::numeric_limits<float>::min());
-      const bool starts_tree = items.empty() || items.back().kind != light.kind ||
-                               items.back().exact != light.exact ||
-                               (i == 0 && lights.edges(b) != lights.edges(b - 1));
-      if (starts_tree) starts.push_back(static_cast<std::uint32_t>(items.size()));
-      items.push_back(light);
-      blocks_.push_back(static_cast<std::uint32_t>(b));
-      sums_.push_back(sums_.back() + double(light.intensity));
-    }
-  }
-  nodes_.reserve(2 * items.size());
-  costs_.resize(items.size());
-  starts.push_back(static_cast<std::uint32_t>(items.size()));
-  constexpr std::uint64_t path = std::uint64_t{1} << 55;  // no pixel's
-  Rng rng(context.seed, context.iteration, path, Rng::Purpose::gather);
-  for (std::size_t t = 0; t + 1 < starts.size(); ++t) {
-    const auto root = static_cast<std::uint32_t>(nodes_.size());
-    roots_.push_back(root);
-    Node& node = nodes_.emplace_back();
-    node.first = starts[t], node.end = starts[t + 1];
-    build(root, items);
-  }
-  for (Node& n : nodes_) n.representative = choose(n, rng.next());
-  for (const Node& n : nodes_) {  // parents come before their children
-    if (n.child == 0) continue;
-    Node& left = nodes_[n.child];
-    (n.representative < left.end ? left : nodes_[n.child + 1]).representative = n.representative;
-  }
+VplTree::VplTree(const VplSet& lights, const ThreadPool& pool, const BlockRange& range) : sums_{0} {
+  const std::vector<Item> all = items(lights, range, pool);
+  sums_.reserve(all.size() + 1);
+  for (const Item& i : all) sums_.push_back(sums_.back() + double(i.intensity));
+  costs_.resize(all.size());
+  build(add_roots(lights, all), all, pool);
   costs_ = {};
 }
 
-void VplTree::build(std::uint32_t index, std::span<const Item> items) {
-  Node& node = nodes_[index];
+/// The lights of the range, in the order of blocks.
+std::vector<VplTree::Item> VplTree::items(const VplSet& lights, const BlockRange& range,
+                                          const ThreadPool& pool) {
+  for (std::size_t b = 0; b < lights.blocks(); ++b) {
+    first_of_block_.push_back(static_cast<std::uint32_t>(blocks_.size()));
+    const int count = range.contains(b) ? lights.count(b) : 0;
+    blocks_.insert(blocks_.end(), static_cast<std::size_t>(count), static_cast<std::uint32_t>(b));
+  }
+  std::vector<Item> all(blocks_.size());
+  for_each_chunked(pool, all.size(), 4096, [&](std::size_t i) {
+    all[i] = item(lights, blocks_[i], lane(static_cast<std::uint32_t>(i)));
+    // A light whose estimated intensity is 0 may shine all the same.
+    all[i].intensity = std::max(all[i].intensity, std::numeric_limits<float>::min());
+  });
+  return all;
+}
+
+/// A tree of n lights has 2 n - 1 nodes, so the places of all nodes are given by their numbers of
+/// lights.
+std::vector<VplTree::Subtree> VplTree::add_roots(const VplSet& lights,
+                                                 std::span<const Item> items) {
+  const auto starts_tree = [&](std::size_t i) {
+    return items[i].kind != items[i - 1].kind || items[i].exact != items[i - 1].exact ||
+           (blocks_[i] != blocks_[i - 1] &&
+            lights.edges(blocks_[i]) != lights.edges(blocks_[i - 1]));
+  };
+  nodes_.resize(2 * items.size());
+  std::vector<Subtree> trees;
+  std::uint32_t root = 0;
+  for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
+    for (end = first + 1; end < items.size() && !starts_tree(end);) ++end;
+    nodes_[root].first = static_cast<std::uint32_t>(first);
+    nodes_[root].end = static_cast<std::uint32_t>(end);
+    roots_.push_back(root);
+    trees.push_back({root, root + 1});
+    root += 2 * static_cast<std::uint32_t>(end - first) - 1;
+  }
+  nodes_.resize(root);
+  return trees;
+}
+
+/// Builds large subtrees node by node, level by level, until there are enough of them for threads
+/// to build whole.
+void VplTree::build(std::vector<Subtree> subtrees, std::span<const Item> items,
+                    const ThreadPool& pool) {
+  constexpr std::uint32_t small = 4096;  // lights
+  while (!subtrees.empty()) {
+    std::vector<std::optional<std::array<Subtree, 2>>> parts(subtrees.size());
+    pool.for_each(static_cast<int>(subtrees.size()), [&](int i) {
+      const Subtree& tree = subtrees[static_cast<std::size_t>(i)];
+      const Node& node = nodes_[tree.node];
+      if (node.end - node.first > small) {
+        parts[static_cast<std::size_t>(i)] = divide(tree, items);
+      } else {
+        build(tree, items);
+      }
+    });
+    subtrees.clear();
+    for (const auto& two : parts) {
+      if (two) subtrees.insert(subtrees.end(), two->begin(), two->end());
+    }
+  }
+}
+
+void VplTree::build(const Subtree& tree, std::span<const Item> items) {
+  const auto parts = divide(tree, items);
+  if (!parts) return;
+  for (const Subtree& part : *parts) build(part, items);
+}
+
+/// Completes the node, and returns its parts if it has more than one light.
+std::optional<std::array<VplTree::Subtree, 2>> VplTree::divide(const Subtree& tree,
+                                                               std::span<const Item> items) {
+  Node& node = nodes_[tree.node];
   node.kind = items[node.first].kind;
   node.exact = items[node.first].exact;
   node.bounds = items[node.first].bounds;
   for (std::uint32_t i = node.first + 1; i < node.end; ++i) node.bounds.add(items[i].bounds);
   node.intensity = static_cast<float>(sums_[node.end] - sums_[node.first]);
-  if (node.end - node.first == 1) return;
+  if (node.end - node.first == 1) return {};
   const std::uint32_t middle = split(node, items);
-  const auto child = static_cast<std::uint32_t>(nodes_.size());
-  const std::uint32_t first = node.first, end = node.end;
-  node.child = child;
-  nodes_.resize(nodes_.size() + 2);  // `node` is no longer valid
-  nodes_[child].first = first, nodes_[child].end = middle;
-  nodes_[child + 1].first = middle, nodes_[child + 1].end = end;
-  build(child, items);
-  build(child + 1, items);
+  node.child = tree.below;
+  Node &left = nodes_[node.child], &right = nodes_[node.child + 1];
+  left.first = node.first, left.end = middle;
+  right.first = middle, right.end = node.end;
+  const std::uint32_t below_left = tree.below + 2;
+  const std::uint32_t below_right = below_left + 2 * (middle - node.first - 1);
+  return {{{{node.child, below_left}, {node.child + 1, below_right}}}};
 }
 
 std::uint32_t VplTree::split(const Node& node, std::span<const Item> items) {

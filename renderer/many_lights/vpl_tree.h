@@ -1,10 +1,11 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "renderer/many_lights/vpl_set.h"
-#include "renderer/path/contexts.h"
 
 namespace lacuna {
 
@@ -23,17 +24,19 @@ class VplTree {
     float intensity = 0;           ///< sum of the lights' luminances; > 0
     std::uint32_t first = 0, end;  ///< numbers of the lights, in the order of blocks
     std::uint32_t child = 0;       ///< the first of two children, the other follows; 0: one light
-    std::uint32_t representative;  ///< a light, by probability proportional to intensity
     Kind kind = Kind::diffuse;
     bool exact = true;  ///< `intensity` and `bounds` bound the lights' emission
   };
 
-  /// `context`: of the random numbers that choose representatives, of which a child shares that of
-  /// its parent. `range`: the blocks whose lights are in the trees.
-  VplTree(const VplSet& lights, const IterationContext& context, const BlockRange& range = {});
+  /// `range`: the blocks whose lights are in the trees. The trees do not depend on the number of
+  /// threads.
+  VplTree(const VplSet& lights, const ThreadPool& pool, const BlockRange& range = {});
 
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
+  /// All nodes, parents before their children.
+  std::span<const Node> nodes() const { return nodes_; }
   std::span<const std::uint32_t> roots() const { return roots_; }
+  /// The number of lights.
   std::size_t size() const { return blocks_.size(); }
   std::uint32_t block(std::uint32_t light) const { return blocks_[light]; }
   /// Index of a light in its block.
@@ -53,8 +56,16 @@ class VplTree {
     Kind kind;
     bool exact;
   };
+  /// A node without children yet, and the place in nodes_ of all nodes below it.
+  struct Subtree {
+    std::uint32_t node, below;
+  };
   static Item item(const VplSet& lights, std::size_t block, int i);
-  void build(std::uint32_t index, std::span<const Item> items);
+  std::vector<Item> items(const VplSet& lights, const BlockRange& range, const ThreadPool& pool);
+  std::vector<Subtree> add_roots(const VplSet& lights, std::span<const Item> items);
+  void build(std::vector<Subtree> subtrees, std::span<const Item> items, const ThreadPool& pool);
+  void build(const Subtree& tree, std::span<const Item> items);
+  std::optional<std::array<Subtree, 2>> divide(const Subtree& tree, std::span<const Item> items);
   std::uint32_t split(const Node& node, std::span<const Item> items);
 
   std::vector<Node> nodes_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel/for_each_chunked.h"
 #include "renderer/core/free_memory.h"
 
 namespace lacuna {
@@ -136,12 +137,8 @@ void PhotonMap::arrange(double radius, const ThreadPool& pool) {
   grid_.build({positions_.begin(), positions_.end()}, radius, pool);
   const std::size_t n = positions_.size();
   places_.resize(n);
-  constexpr std::size_t block = 1 << 14;
-  pool.for_each(static_cast<int>((n + block - 1) / block), [&](int b) {
-    const std::size_t begin = static_cast<std::size_t>(b) * block;
-    for (std::size_t k = begin; k < std::min(n, begin + block); ++k) {
-      places_.set(grid_.order()[k], static_cast<std::uint32_t>(k));
-    }
+  for_each_chunked(pool, n, 1 << 14, [&](std::size_t k) {
+    places_.set(grid_.order()[k], static_cast<std::uint32_t>(k));
   });
   each_photon(pool, [&](std::size_t i, const Photon& p) { photons_.set(places_[i], p); });
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/parallel/for_each_chunked.h"
 #include "renderer/core/frame.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/emitters/environment_cube.h"
@@ -66,15 +67,11 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
 
 void Scene::find_contacts(const ThreadPool& pool) {
   std::vector<PunctualLight>& lights = data_->lights;
-  constexpr std::size_t part = 1024;
-  pool.for_each(static_cast<int>((lights.size() + part - 1) / part), [&](int i) {
-    const std::size_t first = static_cast<std::size_t>(i) * part;
-    for (std::size_t k = first; k < std::min(first + part, lights.size()); ++k) {
-      PunctualLight& light = lights[k];
-      if (light.kind == PunctualLight::Kind::directional) continue;
-      if (const auto contact = find_contact(light.position)) {
-        light.contact = std::make_shared<SurfaceContact>(*contact);
-      }
+  for_each_chunked(pool, lights.size(), 1024, [&](std::size_t i) {
+    PunctualLight& light = lights[i];
+    if (light.kind == PunctualLight::Kind::directional) return;
+    if (const auto contact = find_contact(light.position)) {
+      light.contact = std::make_shared<SurfaceContact>(*contact);
     }
   });
 }

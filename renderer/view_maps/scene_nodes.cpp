@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/parallel/for_each_chunked.h"
+
 namespace lacuna {
 
 namespace {
@@ -47,14 +49,11 @@ SceneNodes::SceneNodes(const Octree& scene, const ThreadPool& pool)
   constexpr std::size_t at_once = 1 << 16;
   for (auto level = static_cast<std::size_t>(levels_) + 1; level-- > 0;) {
     const std::size_t first = scene.first[level], end = scene.first[level + 1];
-    pool.for_each(static_cast<int>((end - first + at_once - 1) / at_once), [&](int k) {
-      const std::size_t from = first + static_cast<std::size_t>(k) * at_once;
-      for (std::size_t i = from; i < std::min(end, from + at_once); ++i) {
-        const Octree::Node& node = scene.nodes[i];
-        nodes_[i] = {node.first_child, node.children == 0
-                                           ? whole_cube
-                                           : shape_of(node.octants, &nodes_[node.first_child])};
-      }
+    for_each_chunked(pool, end - first, at_once, [&](std::size_t i) {
+      const Octree::Node& node = scene.nodes[first + i];
+      nodes_[first + i] = {
+          node.first_child,
+          node.children == 0 ? whole_cube : shape_of(node.octants, &nodes_[node.first_child])};
     });
   }
 }

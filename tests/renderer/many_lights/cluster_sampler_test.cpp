@@ -29,7 +29,7 @@ struct Misled : ExactVisibility {
 TEST(ClusterSampler, SamplesByItsProbabilities) {
   for (const char* scene : {"ajar", "coated_points"}) {
     const LitScene lit({scene}, 40, 2);
-    const VplTree tree(lit.lights(), lit.context(1));
+    const VplTree tree(lit.lights(), lit.pool());
     constexpr int rounds = 30000;
     const std::vector<std::uint32_t> cells{5};
     lit.with_points(500, [&](std::span<const ShadingPoint> points) {
@@ -66,13 +66,12 @@ TEST(ClusterSampler, OfManySamplesIsTheSumOfAll) {
   for (const char* scene : {"ajar", "atrium", "coated_points"}) {
     SCOPED_TRACE(scene);
     const LitScene lit({scene}, 200, 2);
-    const VplTree tree(lit.lights(), lit.context(1));
+    const VplTree tree(lit.lights(), lit.pool());
     const ClusterSampler sampler(lit.terms(), tree, {.lights = 1 << 18, .nodes = 40});
     lit.with_points(400, [&](std::span<const ShadingPoint> points) {
       const ExactVisibility exact{{}};
       const auto all = gathered(lit, lit.context(1), exact, points);
-      const auto sums =
-          gathered(lit, lit.context(1), exact, points, nullptr, {.clusters = &sampler});
+      const auto sums = gathered(lit, lit.context(1), exact, points, nullptr, {&sampler});
       for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(sums[i], all[i], 0.01 * all[i]);
     });
   }
@@ -82,17 +81,17 @@ TEST(ClusterSampler, SumsHaveTheMeanOfAll) {
   for (const char* scene : {"ajar", "coated_points"}) {
     SCOPED_TRACE(scene);
     const LitScene lit({scene}, 200, 2);
-    const VplTree tree(lit.lights(), lit.context(1));
+    const VplTree tree(lit.lights(), lit.pool());
     const ClusterSampler sampler(lit.terms(), tree, {.lights = 20, .nodes = 40});
-    expect_means_of_all(lit, {.clusters = &sampler});
+    expect_means_of_all(lit, {&sampler});
   }
 }
 
 TEST(ClusterSampler, SumsHaveTheMeanOfAllWithWrongRates) {
   const LitScene lit({"ajar"}, 200, 2);
-  const VplTree tree(lit.lights(), lit.context(1));
+  const VplTree tree(lit.lights(), lit.pool());
   const ClusterSampler sampler(lit.terms(), tree, {.lights = 20, .nodes = 40});
-  expect_means_of_all<Misled>(lit, {.clusters = &sampler});
+  expect_means_of_all<Misled>(lit, {&sampler});
 }
 
 }  // namespace

@@ -35,11 +35,11 @@ double luminance_of_all(const LitScene& lit, const ShadingPoint& p) {
 TEST(Lightcuts, ErrIsWithinTheirBounds) {
   for (const char* scene : {"ajar", "cornell"}) {
     const LitScene lit({scene}, 2000, 2);
-    const VplTree tree(lit.lights(), lit.context(1));
+    const VplTree tree(lit.lights(), lit.pool());
     std::size_t coarse = 0, fine = 0, most = 0;
     for (const LightcutsSettings& s : {LightcutsSettings{.error = 0.3}, LightcutsSettings{},
                                        LightcutsSettings{.error = 0.001, .most = 200}}) {
-      const Lightcuts cuts(lit.terms(), tree, s);
+      const Lightcuts cuts(lit.terms(), tree, s, lit.context(1));
       lit.with_points(500, [&](std::span<const ShadingPoint> points) {
         for (const ShadingPoint& p : points.first(30)) {
           double sum = 0, bounds = 0, largest = 0;
@@ -66,14 +66,27 @@ TEST(Lightcuts, ErrIsWithinTheirBounds) {
 TEST(Lightcuts, OfSingleLightsAreTheSumOfAll) {
   for (const char* scene : {"ajar", "coated_points", "atrium"}) {
     const LitScene lit({scene}, 200, 2);
-    const VplTree tree(lit.lights(), lit.context(1));
-    const Lightcuts cuts(lit.terms(), tree, {.error = 0, .most = 1 << 20});
+    const VplTree tree(lit.lights(), lit.pool());
+    const Lightcuts cuts(lit.terms(), tree, {.error = 0, .most = 1 << 20}, lit.context(1));
     lit.with_points(400, [&](std::span<const ShadingPoint> points) {
       const ExactVisibility exact{{}};
       const auto all = gathered(lit, lit.context(1), exact, points);
-      const auto cut = gathered(lit, lit.context(1), exact, points, nullptr, {.cuts = &cuts});
+      const auto cut = gathered(lit, lit.context(1), exact, points, nullptr, {&cuts});
       for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(cut[i], all[i], 1e-5 * all[i]);
     });
+  }
+}
+
+TEST(Lightcuts, ChildrenShareTheRepresentativeOfTheirParent) {
+  const LitScene lit({"ajar"}, 2000, 2);
+  const VplTree tree(lit.lights(), lit.pool());
+  const Lightcuts cuts(lit.terms(), tree, {}, lit.context(1));
+  for (std::uint32_t i = 0; i < tree.nodes().size(); ++i) {
+    const VplTree::Node& node = tree.node(i);
+    const std::uint32_t r = cuts.representative(i);
+    ASSERT_TRUE(r >= node.first && r < node.end);
+    if (node.child == 0) continue;
+    EXPECT_TRUE(cuts.representative(node.child) == r || cuts.representative(node.child + 1) == r);
   }
 }
 
@@ -81,8 +94,8 @@ TEST(Lightcuts, OfNoLightsAreNothing) {
   const LitScene lit({"ajar"}, 1, 2, false);
   const VplSet none(1, {1, false, 0.1F});
   const VplContributions terms(none, 2);
-  const VplTree tree(none, lit.context(1));
-  const Lightcuts cuts(terms, tree, {});
+  const VplTree tree(none, lit.pool());
+  const Lightcuts cuts(terms, tree, {}, lit.context(1));
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {
     EXPECT_TRUE(cut_of(lit, cuts, points[0]).empty());
   });

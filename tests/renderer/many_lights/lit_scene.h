@@ -94,7 +94,7 @@ class LitScene {
           if (length > 0) ++walked_[0];
         },
         [](const Splat&) {});
-    lights.arrange(groups);
+    lights.arrange(groups, pool_);
     return lights;
   }
 
