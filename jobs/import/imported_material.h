@@ -86,6 +86,8 @@ struct ImportedMaterial {
 
   // Type::standard
   double metallic = 0, roughness = 1, specular = 1, transmission = 0;
+  std::shared_ptr<const ImportedTexture> roughness_texture, metallic_texture;
+  bool thin = false;  ///< what it transmits goes straight on
   double coat = 0, coat_roughness = 0;
   Rgb sheen{0, 0, 0};
   double anisotropy = 0;

@@ -88,7 +88,8 @@ Rgb ImportedMaterials::within_one(const ImportedMaterial& m, const Rgb& color,
                                   const std::string& what) {
   Rgb out = color;
   for (int c = 0; c < 3; ++c) out[c] = std::clamp(out[c], 0.0F, 1.0F);
-  if (out != color) {
+  constexpr float rounding = 1e-5F;
+  if ((out - color).length() > rounding) {
     notes_.push_back({m.place, m.name, "approximated",
                       fmt::format("{} ({:.4g} {:.4g} {:.4g}) is clamped to 0 to 1", what, color.x,
                                   color.y, color.z)});
@@ -112,11 +113,16 @@ void ImportedMaterials::add_base(const ImportedMaterial& m, const ImportedValue&
 }
 
 void ImportedMaterials::add_standard(const ImportedMaterial& m, OrderedJson& json) {
-  const StandardMaterial s = standard_material(m);
+  StandardMaterial s = standard_material(m);
+  s.transmitted.value = within_one(m, s.transmitted.value, "its transmittance");
   add_base(m, s.base_color, json);
   OrderedJson& pbr = json["pbrMetallicRoughness"];
   pbr["metallicFactor"] = s.metallic;
   pbr["roughnessFactor"] = s.roughness;
+  if (m.type == ImportedMaterial::Type::standard && (m.roughness_texture || m.metallic_texture)) {
+    pbr["metallicRoughnessTexture"] =
+        textures_.metallic_roughness(m.metallic_texture.get(), m.roughness_texture.get());
+  }
   OrderedJson extensions = s.extensions();
   if (s.transmits_diffusely && s.transmitted.texture) {
     extensions["KHR_materials_diffuse_transmission"]["diffuseTransmissionColorTexture"] =

@@ -55,6 +55,16 @@ LinearPicture grey(const LinearPicture& picture) {
   return out;
 }
 
+LinearPicture white() { return {1, 1, {Rgb(1)}}; }
+
+/// Gives both the larger size.
+void fit(LinearPicture& a, LinearPicture& b) {
+  const int width = std::max(a.width, b.width), height = std::max(a.height, b.height);
+  for (LinearPicture* p : {&a, &b}) {
+    if (p->width != width || p->height != height) *p = resized(*p, width, height);
+  }
+}
+
 }  // namespace
 
 void ImportedTextures::note(const ImportedTexture& t, std::string treatment, std::string how) {
@@ -150,15 +160,10 @@ OrderedJson ImportedTextures::color_with_alpha(const ImportedTexture* color,
   const std::string key = fmt::format("alpha {} of {}", alpha == nullptr ? "1" : key_of(*alpha),
                                       color == nullptr ? "white" : key_of(*color));
   if (!uris_.contains(key)) {
-    LinearPicture opacities{1, 1, {Rgb(1)}}, colors{1, 1, {Rgb(1)}};
+    LinearPicture opacities = white(), colors = white();
     if (alpha != nullptr) opacities = grey(linear_picture(*alpha));
     if (color != nullptr) colors = linear_picture(*color);
-    const int width = std::max(opacities.width, colors.width),
-              height = std::max(opacities.height, colors.height);
-    const auto fitted = [&](LinearPicture& p) {
-      if (p.width != width || p.height != height) p = resized(p, width, height);
-    };
-    fitted(opacities), fitted(colors);
+    fit(opacities, colors);
     const auto rgb = srgb_codes(colors, 1), a = linear_codes(opacities);
     std::vector<std::uint8_t> rgba;
     rgba.reserve(4 * colors.pixels.size());
@@ -166,14 +171,36 @@ OrderedJson ImportedTextures::color_with_alpha(const ImportedTexture* color,
       rgba.insert(rgba.end(), {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], a[3 * i]});
     }
     encoded(placed, key, colors, rgba);
-    if (color != nullptr && alpha != nullptr) {
-      const bool same = color->scale == alpha->scale && color->offset == alpha->offset &&
-                        color->wrap == alpha->wrap;
-      if (!same) {
-        note(*alpha, "approximated",
-             "is placed as the colour of its material, whose transform differs");
-      }
+    if (color != nullptr && alpha != nullptr) note_place(*color, *alpha, "colour");
+  }
+  return info(placed, uris_[key]);
+}
+
+void ImportedTextures::note_place(const ImportedTexture& placed, const ImportedTexture& other,
+                                  const std::string& what) {
+  const bool same =
+      placed.scale == other.scale && placed.offset == other.offset && placed.wrap == other.wrap;
+  if (same) return;
+  note(other, "approximated",
+       fmt::format("is placed as the {} of its material, whose transform differs", what));
+}
+
+OrderedJson ImportedTextures::metallic_roughness(const ImportedTexture* metallic,
+                                                 const ImportedTexture* roughness) {
+  const ImportedTexture& placed = roughness != nullptr ? *roughness : *metallic;
+  const auto part = [](const ImportedTexture* t) { return t == nullptr ? "1" : key_of(*t); };
+  const std::string key = fmt::format("metallic {} rough {}", part(metallic), part(roughness));
+  if (!uris_.contains(key)) {
+    LinearPicture blue = white(), green = white();
+    if (metallic != nullptr) blue = grey(linear_picture(*metallic));
+    if (roughness != nullptr) green = grey(linear_picture(*roughness));
+    fit(blue, green);
+    LinearPicture both = green;
+    for (std::size_t i = 0; i < both.pixels.size(); ++i) {
+      both.pixels[i] = {1, green.pixels[i].x, blue.pixels[i].x};
     }
+    encoded(placed, key, both, linear_codes(both));
+    if (metallic != nullptr && roughness != nullptr) note_place(placed, *metallic, "roughness");
   }
   return info(placed, uris_[key]);
 }

@@ -28,6 +28,8 @@ class ImportedTextures {
   OrderedJson color(const ImportedTexture& texture, double* scale = nullptr);
   /// A colour (null: white) with `opacity` as its alpha.
   OrderedJson color_with_alpha(const ImportedTexture* color, const ImportedValue& opacity);
+  /// Factors of glTF's metallic-roughness model (null: 1) as its blue and green.
+  OrderedJson metallic_roughness(const ImportedTexture* metallic, const ImportedTexture* roughness);
   /// A number: linear, the same in all channels.
   OrderedJson number(const ImportedTexture& texture);
   /// Vectors (normal maps): linear.
@@ -39,6 +41,9 @@ class ImportedTextures {
   std::string copied(const ImportedTexture& texture);
   std::string encoded(const ImportedTexture& texture, const std::string& key,
                       const LinearPicture& picture, const std::vector<std::uint8_t>& codes);
+  /// Notes that `other` has the place of `placed` if the two differ.
+  void note_place(const ImportedTexture& placed, const ImportedTexture& other,
+                  const std::string& what);
   std::string unused_name(std::string stem, const std::string& kind);
   void note(const ImportedTexture& texture, std::string treatment, std::string how);
 

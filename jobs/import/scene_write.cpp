@@ -32,7 +32,7 @@ bool is_textured(const ImportedMaterial& m, std::set<const ImportedMaterial*>& s
   if (!seen.insert(&m).second) return false;
   const bool own = m.diffuse.texture || m.reflectance.texture || m.transmittance.texture ||
                    m.opacity.texture || m.alpha_texture || m.weight_texture || m.normal_map ||
-                   m.bump_map;
+                   m.bump_map || m.roughness_texture || m.metallic_texture;
   return own || std::any_of(m.parts.begin(), m.parts.end(),
                             [&](const auto& part) { return is_textured(*part.material, seen); });
 }

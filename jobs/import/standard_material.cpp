@@ -56,7 +56,7 @@ void set_own(const ImportedMaterial& m, StandardMaterial& s) {
   s.coat_roughness = m.coat_roughness;
   s.sheen = m.sheen;
   s.anisotropy = m.anisotropy;
-  s.solid = m.transmission > 0;
+  s.solid = m.transmission > 0 && !m.thin;
 }
 
 }  // namespace

@@ -229,5 +229,41 @@ TEST(SceneWrite, LensesAndCropsGoIntoTheJob) {
   EXPECT_EQ(job.crop->from, (std::array<int, 2>{50, 20}));
 }
 
+TEST(SceneWrite, MetallicAndRoughnessAreOnePicture) {
+  const TemporaryFolder folder;
+  const auto grey = [&](const std::string& name, std::uint8_t code) {
+    ImportedTexture t;
+    t.file = folder.write(name, encode_png(1, 1, std::vector<std::uint8_t>(3, code)));
+    t.srgb = false;
+    return std::make_shared<const ImportedTexture>(t);
+  };
+  ImportedMaterial m;
+  m.type = ImportedMaterial::Type::standard;
+  m.roughness_texture = grey("r.png", 51);
+  m.metallic_texture = grey("m.png", 204);
+  m.metallic = 1;
+  for (const bool both : {true, false}) {
+    if (!both) m.metallic_texture = nullptr;
+    const SceneData scene = loaded(scene_of(m), folder);
+    const Rgb found = at(scene, scene.materials[0].metallic_roughness_texture, V2f(.5F, .5F));
+    EXPECT_NEAR(found.y, .2, 1e-3);
+    EXPECT_NEAR(found.z, both ? .8 : 1, 1e-3);
+  }
+}
+
+TEST(SceneWrite, RoundingBeyondOneIsNoNote) {
+  const TemporaryFolder folder;
+  ImportedMaterial m;
+  m.type = ImportedMaterial::Type::diffuse_transmission;
+  m.transmittance.value = Rgb(1.000001F, .5F, 1);
+  std::vector<ImportNote> notes;
+  EXPECT_EQ(loaded(scene_of(m), folder, &notes).materials[0].extensions.diffuse_transmission.color,
+            Rgb(1, .5F, 1));
+  EXPECT_TRUE(notes.empty());
+  m.transmittance.value.x = 1.1F;
+  loaded(scene_of(m), folder, &notes);
+  EXPECT_EQ(notes.size(), 1U);
+}
+
 }  // namespace
 }  // namespace lacuna
