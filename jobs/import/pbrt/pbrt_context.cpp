@@ -33,12 +33,20 @@ void Context::note_unused(const Parameters& parameters) {
   }
 }
 
-std::filesystem::path Context::resolve(const std::string& name, const Place& place) const {
-  const std::filesystem::path path(name);
+namespace {
+
+/// Whether a name, as it is written, leads out of the folder that it is relative to.
+bool leads_out(const std::filesystem::path& folder, const std::filesystem::path& path) {
   const auto inside =
       (folder / path).lexically_normal().lexically_relative(folder.lexically_normal());
-  const bool leaves = path.is_absolute() || inside.empty() || *inside.begin() == "..";
-  if (name.empty() || leaves) {
+  return path.is_absolute() || inside.empty() || *inside.begin() == "..";
+}
+
+}  // namespace
+
+std::filesystem::path Context::resolve(const std::string& name, const Place& place) const {
+  const std::filesystem::path path(name);
+  if (name.empty() || leads_out(folder, path)) {
     fail(place,
          fmt::format("file \"{}\"; allowed: files within the folder of the scene file", name));
   }
@@ -54,11 +62,17 @@ std::filesystem::path Context::resolve(const std::string& name, const Place& pla
 
 std::optional<std::filesystem::path> Context::find_file(const std::string& name, const Place& place,
                                                         const std::string& owner) {
-  const auto path = resolve(name, place);
+  const bool outside = !name.empty() && leads_out(folder, name);
   std::error_code none;
-  if (std::filesystem::is_regular_file(path, none)) return path;
-  missing_.push_back({place, owner, name});
-  left_out(place, owner, fmt::format("file \"{}\" does not exist", name));
+  if (!outside) {
+    const auto path = resolve(name, place);
+    if (std::filesystem::is_regular_file(path, none)) return path;
+  }
+  const std::string how =
+      fmt::format("file \"{}\" {}", name,
+                  outside ? "lies outside of the folder of the scene file" : "does not exist");
+  missing_.push_back({place, owner, how});
+  left_out(place, owner, how);
   return std::nullopt;
 }
 

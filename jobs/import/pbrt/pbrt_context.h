@@ -57,17 +57,18 @@ class Context {
   /// The notes, each once, with the number of further places.
   std::vector<ImportNote> notes() const;
 
-  /// The path of a file that a statement names. Throws SceneError if it lies outside the folder of
-  /// the main file. None if it does not exist, which is remembered.
+  /// The path of a file that a statement names. None if the folder of the main file has no such
+  /// file, which is remembered. Throws SceneError for a link that leads out of the folder.
   std::optional<std::filesystem::path> find_file(const std::string& name, const Place& place,
                                                  const std::string& owner);
   struct MissingFile {
     Place place;
-    std::string owner, name;
+    std::string owner;
+    std::string how;  ///< name and reason
   };
   const std::vector<MissingFile>& missing() const { return missing_; }
 
-  /// The same, whether the file exists or not.
+  /// The same, whether the file exists or not. Throws SceneError if it lies outside the folder.
   std::filesystem::path resolve(const std::string& name, const Place& place) const;
 
   /// Remembers a material that is named before it is defined.

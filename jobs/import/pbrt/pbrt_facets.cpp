@@ -73,6 +73,12 @@ Facets read_facets(Context& context, const Parameters& p, double otherwise,
   return out;
 }
 
+void set_roughness(ImportedMaterial& material, const Facets& facets) {
+  // glTF's roughness is the square root of alpha.
+  material.roughness = std::sqrt((facets.alpha[0] + facets.alpha[1]) / 2);
+  if (facets.texture != nullptr) material.roughness_texture = to_power(*facets.texture, 0.5);
+}
+
 void set_facets(ImportedMaterial& material, const Facets& facets) {
   material.correlated_masking = true;
   material.alpha = facets.alpha;

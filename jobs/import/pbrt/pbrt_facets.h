@@ -18,6 +18,9 @@ struct Facets {
 Facets read_facets(Context& context, const Parameters& parameters, double otherwise,
                    const std::string& prefix = "");
 
+/// Of a material of glTF's own.
+void set_roughness(ImportedMaterial& material, const Facets& facets);
+
 void set_facets(ImportedMaterial& material, const Facets& facets);
 
 }  // namespace lacuna::pbrt

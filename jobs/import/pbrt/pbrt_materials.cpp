@@ -62,7 +62,8 @@ void read_bumps(Context& context, const Parameters& p, ImportedMaterial& materia
   }
 }
 
-/// The lobes of one material of pbrt, which are parts of a mixture here, have its bumps.
+/// The lobes of one material of pbrt, which are parts of a mixture here, have its bumps, and its
+/// name in notes.
 void move_bumps_to_parts(ImportedMaterial& material) {
   if (material.type != ImportedMaterial::Type::mixture) return;
   for (auto& part : material.parts) {
@@ -70,6 +71,8 @@ void move_bumps_to_parts(ImportedMaterial& material) {
     copy->bump_map = material.bump_map;
     copy->bump_scale = material.bump_scale;
     copy->normal_map = material.normal_map;
+    copy->name = material.name;
+    copy->place = material.place;
     move_bumps_to_parts(*copy);
     part.material = std::move(copy);
   }
@@ -154,9 +157,9 @@ ImportedMaterial make_material(Context& context, const std::string& type,
     out = std::move(*made);
   }
   read_bumps(context, parameters, out);
-  if (type != "mix") move_bumps_to_parts(out);
   out.name = type;
   out.place = parameters.place().text();
+  if (type != "mix") move_bumps_to_parts(out);
   context.note_unused(parameters);
   return out;
 }

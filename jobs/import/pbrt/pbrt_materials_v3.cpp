@@ -80,8 +80,7 @@ ImportedMaterial diffuse_and_facets(const V3Material& s, const ImportedValue& kd
   for (int c = 0; c < 3; ++c) {
     m.diffuse.value[c] = std::min(kd.value[c] * undimmed, std::max(kd.value[c], 1.0F));
   }
-  m.roughness = std::sqrt((facets.alpha[0] + facets.alpha[1]) / 2);
-  m.alpha_texture = facets.texture;
+  set_roughness(m, facets);
   s.approximated("glTF's own material: its diffuse lobe is dimmed by the specular one");
   return m;
 }
@@ -137,9 +136,7 @@ ImportedMaterial substrate(const V3Material& s) {
   const double f0 = std::clamp(double(luminance(ks.value)) * (ks.texture ? 0.5 : 1), 0.0, 0.9);
   m.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
   m.diffuse.value *= static_cast<float>(23.0 / 28 * (1 - f0) / (1 - mean_schlick(f0)));
-  const Facets facets = read_facets(s.context, s.p, 0.1);
-  m.roughness = std::sqrt((facets.alpha[0] + facets.alpha[1]) / 2);
-  m.alpha_texture = facets.texture;
+  set_roughness(m, read_facets(s.context, s.p, 0.1));
   s.approximated("glTF's own material of the same mean albedo");
   return m;
 }

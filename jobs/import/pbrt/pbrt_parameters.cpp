@@ -73,12 +73,6 @@ Parameters::Parameters(Tokens& tokens, Place place, std::string owner)
     p.type = type->name;
     p.name = text.substr(name, text.find_last_not_of(" \t") + 1 - name);
     read_values(tokens, p);
-    const auto same = std::find_if(parameters_.begin(), parameters_.end(), [&](const Parameter& q) {
-      return q.name == p.name && q.type == p.type;
-    });
-    if (same != parameters_.end()) {
-      fail(p.place, fmt::format("{}: parameter \"{}\" stands there twice", owner_, text));
-    }
     if (parameters_.size() == max_parameters) {
       fail(p.place, fmt::format("{}: more than {} parameters", owner_, max_parameters));
     }
@@ -141,14 +135,13 @@ void Parameters::add_defaults(const Parameters& defaults) {
 
 const Parameter* Parameters::find(std::string_view name,
                                   std::initializer_list<std::string_view> allowed) const {
-  for (const Parameter& p : parameters_) {
-    if (p.name != name || std::find(allowed.begin(), allowed.end(), p.type) == allowed.end()) {
-      continue;
-    }
-    p.used = true;
-    return &p;
-  }
-  return nullptr;
+  const auto is_it = [&](const Parameter& p) {
+    return p.name == name && std::find(allowed.begin(), allowed.end(), p.type) != allowed.end();
+  };
+  const auto found = std::find_if(parameters_.rbegin(), parameters_.rend(), is_it);
+  if (found == parameters_.rend()) return nullptr;
+  found->used = true;
+  return &*found;
 }
 
 const Parameter* Parameters::find_spectrum(std::string_view name) const {

@@ -22,7 +22,8 @@ struct Parameter {
 };
 
 /// The parameters of a statement. A look-up marks what it finds as used; a parameter of another
-/// type than those of the look-up is not found.
+/// type than those of the look-up is not found. Of several with one name the last is found, as in
+/// pbrt.
 class Parameters {
  public:
   Parameters() = default;

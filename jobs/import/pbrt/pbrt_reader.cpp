@@ -92,9 +92,11 @@ bool Reader::coordinate_statement(std::string_view name, const Place& place) {
     const std::string key = text(place, "the name of a coordinate system");
     const auto found = coordinate_systems_.find(key);
     if (found == coordinate_systems_.end()) {
-      fail(place, fmt::format("there is no coordinate system \"{}\"", key));
+      context_.left_out(place, "CoordSysTransform",
+                        fmt::format("there is no coordinate system \"{}\"", key));
+    } else {
+      state_.ctm.set(found->second);
     }
-    state_.ctm.set(found->second);
   } else if (name == "ReverseOrientation") {
     state_.reversed = !state_.reversed;
   } else if (name == "ActiveTransform") {
@@ -115,6 +117,7 @@ bool Reader::coordinate_statement(std::string_view name, const Place& place) {
 bool Reader::option_statement(std::string_view name, const Place& place) {
   if (name == "Camera") {
     options_.camera = typed_statement(name, place);
+    if (is_singular(state_.ctm.start())) fail(place, "Camera: its transform has no inverse");
     options_.world_from_camera = state_.ctm.start().inverse();
     coordinate_systems_["camera"] = options_.world_from_camera;
     note_animation(place, "Camera");

@@ -86,6 +86,8 @@ class Reader {
   void add(Shape shape, const Place& place);
   std::shared_ptr<const ImportedMaterial> material_of(const Shape& shape);
   void note_animation(const Place& place, const std::string& name);
+  /// Of the current transform; notes that `name` is left out.
+  bool lacks_inverse(const Place& place, const std::string& name);
   /// In pbrt-v3 the scope's end brings back what `name` is now.
   template <class Map>
   void define(Map Names::*map, const std::string& name);

@@ -55,19 +55,21 @@ M44d matrix_of(const std::array<double, 16>& n) {
 }
 
 const M44d& checked(std::string_view name, const M44d& m, const Place& place) {
-  const bool affine = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+  if (m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1) return m;
+  fail(place, fmt::format("{}: the matrix is projective; allowed: affine ones", name));
+}
+
+}  // namespace
+
+bool is_singular(const M44d& m) {
   // Relative to the volume that rows of these lengths could span.
   double span = 1;
   for (int i = 0; i < 3; ++i) span *= V3d(m[i][0], m[i][1], m[i][2]).length();
   const double volume = V3d(m[0][0], m[0][1], m[0][2])
                             .cross(V3d(m[1][0], m[1][1], m[1][2]))
                             .dot(V3d(m[2][0], m[2][1], m[2][2]));
-  if (affine && std::abs(volume) > 1e-14 * span) return m;
-  fail(place, fmt::format("{}: the matrix is {}; allowed: affine ones with an inverse", name,
-                          affine ? "singular" : "projective"));
+  return !(std::abs(volume) > 1e-14 * span);
 }
-
-}  // namespace
 
 void CurrentTransform::set(const M44d& m) {
   for (std::size_t i = 0; i < 2; ++i) {
@@ -98,7 +100,7 @@ bool read_transform(std::string_view name, Tokens& tokens, const Place& place,
     ctm.concatenate(M44d().setTranslation(V3d(n[0], n[1], n[2])));
   } else if (name == "Scale") {
     const auto n = numbers<3>(name, tokens, place);
-    ctm.concatenate(checked(name, M44d().setScale(V3d(n[0], n[1], n[2])), place));
+    ctm.concatenate(M44d().setScale(V3d(n[0], n[1], n[2])));
   } else if (name == "Rotate") {
     const auto n = numbers<4>(name, tokens, place);
     const V3d axis(n[1], n[2], n[3]);

@@ -31,8 +31,11 @@ class CurrentTransform {
 };
 
 /// Reads the numbers of the statement `name` and applies it; false if the name is no transform.
-/// Throws SceneError for missing numbers and for a matrix without an inverse.
+/// Throws SceneError for missing numbers and for a projective matrix.
 bool read_transform(std::string_view name, Tokens& tokens, const Place& place,
                     CurrentTransform& ctm);
+
+/// Whether an affine matrix has no inverse.
+bool is_singular(const M44d& m);
 
 }  // namespace lacuna::pbrt

@@ -34,6 +34,12 @@ void Reader::note_animation(const Place& place, const std::string& name) {
   context_.approximated(place, name, "stands still where it is at the start of the shutter");
 }
 
+bool Reader::lacks_inverse(const Place& place, const std::string& name) {
+  if (!is_singular(state_.ctm.start())) return false;
+  context_.left_out(place, name, "its transform has no inverse");
+  return true;
+}
+
 void Reader::texture(const Place& place) {
   const std::string name = text(place, "the name of a texture");
   const std::string type = text(place, "float or spectrum");
@@ -74,6 +80,7 @@ void Reader::light(const Place& place) {
   Statement s = typed_statement("LightSource", place);
   add_defaults(s.parameters, "light");
   note_animation(place, s.parameters.owner());
+  if (lacks_inverse(place, s.parameters.owner())) return;
   read_light(context_, scene_, s.type, s.parameters, state_.ctm.start());
 }
 
@@ -81,6 +88,7 @@ void Reader::shape(const Place& place) {
   Statement s = typed_statement("Shape", place);
   add_defaults(s.parameters, "shape");
   note_animation(place, s.parameters.owner());
+  if (lacks_inverse(place, s.parameters.owner())) return;
   const auto geometry = shape_reader_.read(s.type, s.parameters, state_.reversed);
   auto alpha = float_value(context_, s.parameters, "alpha");
   if (s.parameters.find("shadowalpha", {"float", "texture"}) != nullptr) {
@@ -99,7 +107,7 @@ void Reader::shape(const Place& place) {
   if (state_.area_light != nullptr) {
     emit(out, s.parameters,
          s.type == "trianglemesh" || s.type == "plymesh" || s.type == "loopsubdiv");
-    if (alpha && alpha->texture == nullptr && out.shape.radiance) {
+    if (alpha && alpha->texture == nullptr && alpha->value.x < 1 && out.shape.radiance) {
       context_.approximated(place, s.parameters.owner(), "a light with an opacity is opaque");
       alpha.reset();
     }
@@ -147,6 +155,7 @@ void Reader::instance(const Place& place) {
   if (found == objects_.end()) fail(place, fmt::format("there is no object \"{}\"", name));
   if (open_object_) fail(place, "an instance within an object");
   note_animation(place, "ObjectInstance");
+  if (lacks_inverse(place, "ObjectInstance")) return;
   for (const Shape& s : found->second) {
     Shape copy = s;
     copy.shape.to_world = s.shape.to_world * state_.ctm.start();

@@ -19,8 +19,8 @@ ImportedScene read_pbrt(const std::filesystem::path& file, MissingFiles missing)
   if (!gone.empty() && missing == MissingFiles::refuse) {
     pbrt::fail(
         gone[0].place,
-        fmt::format("{}: file \"{}\" does not exist{}", gone[0].owner, gone[0].name,
-                    gone.size() == 1 ? "" : fmt::format("; nor do {} more", gone.size() - 1)));
+        fmt::format("{}: {}{}; --missing skip leaves such files out", gone[0].owner, gone[0].how,
+                    gone.size() == 1 ? "" : fmt::format(" (and {} more)", gone.size() - 1)));
   }
   return reader.finish();
 }

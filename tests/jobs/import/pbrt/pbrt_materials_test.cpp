@@ -281,5 +281,30 @@ TEST(PbrtMaterials, TheVersionIsThatOfTheFirstStatementThatTells) {
             std::string::npos);
 }
 
+/// glTF's roughness is the square root of alpha, which is a power of pbrt's roughness.
+TEST(PbrtMaterials, TexturesOfRoughnessAreThoseOfGltfsOwnMaterial) {
+  const PbrtFolder folder;
+  folder.write("r.png", "");
+  const auto scene = folder.import(
+      v3_film +
+          "WorldBegin Texture \"r\" \"float\" \"imagemap\" \"string filename\" \"r.png\" \"bool "
+          "gamma\" \"false\" Material \"substrate\" \"texture uroughness\" \"r\" \"texture "
+          "vroughness\" \"r\" \"bool remaproughness\" \"false\" " +
+          triangle,
+      MissingFiles::refuse);
+  const ImportedMaterial& m = *scene.shapes.at(0).material;
+  ASSERT_NE(m.roughness_texture, nullptr);
+  EXPECT_EQ(m.roughness_texture->gamma, .5);
+  EXPECT_EQ(m.roughness, 1);
+  EXPECT_EQ(m.alpha_texture, nullptr);
+}
+
+TEST(PbrtMaterials, LobesOfAMixtureHaveItsName) {
+  const auto m = v3_material("\"plastic\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.2 .2 .2]");
+  ASSERT_EQ(m->parts.size(), 2);
+  EXPECT_EQ(m->parts[1].material->name, "plastic");
+  EXPECT_NE(m->parts[1].material->place.find("scene.pbrt:"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -164,7 +164,8 @@ TEST(PbrtShapes, MissingFilesAreCountedOrSkipped) {
                            "WorldBegin\nShape \"plymesh\" \"string filename\" \"a.ply\"\n"
                            "Shape \"plymesh\" \"string filename\" \"b.ply\" Shape \"disk\"";
   EXPECT_EQ(PbrtFolder().error(text),
-            "scene.pbrt:3: Shape \"plymesh\": file \"a.ply\" does not exist; nor do 1 more");
+            "scene.pbrt:3: Shape \"plymesh\": file \"a.ply\" does not exist (and 1 more); "
+            "--missing skip leaves such files out");
   const auto scene = PbrtFolder().import(text, MissingFiles::skip);
   EXPECT_EQ(scene.shapes.size(), 1);
   EXPECT_NE(noted(scene).find("\"b.ply\" does not exist"), std::string::npos);
@@ -241,6 +242,16 @@ TEST(PbrtShapes, InstancesShareMeshes) {
   EXPECT_NE(PbrtFolder().error("ObjectInstance \"x\"").find("no object \"x\""), std::string::npos);
   EXPECT_NE(PbrtFolder().error("ObjectBegin \"a\" ObjectBegin \"b\"").find("object within"),
             std::string::npos);
+}
+
+TEST(PbrtShapes, FilesOutsideOfTheFolderAreMissing) {
+  const std::string text = v4_film +
+                           "WorldBegin Shape \"plymesh\" \"string filename\" \"../a.ply\" Shape "
+                           "\"disk\" Shape \"disk\" \"float alpha\" 1";
+  EXPECT_NE(PbrtFolder().error(text).find(
+                "file \"../a.ply\" lies outside of the folder of the scene file"),
+            std::string::npos);
+  EXPECT_EQ(PbrtFolder().import(text, MissingFiles::skip).shapes.size(), 2);
 }
 
 }  // namespace
