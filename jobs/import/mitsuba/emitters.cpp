@@ -158,6 +158,10 @@ void add_daylight(ReadContext& context, const Parameters& p, ImportedScene& scen
 
 }  // namespace
 
+bool is_of_shapes(const SceneElement& e) {
+  return e.type() == "area" || e.type() == "directionalarea";
+}
+
 void add_emitter(ReadContext& context, const SceneElement& element, ImportedScene& scene) {
   const Parameters p = context.parameters(element);
   const std::string& type = element.type();
@@ -168,9 +172,10 @@ void add_emitter(ReadContext& context, const SceneElement& element, ImportedScen
   } else if (type == "sky" || type == "sun" || type == "sunsky") {
     add_daylight(context, p, scene);
   } else {
-    element.fail(
-        "is an emitter that is not read; allowed: area (in a shape), point, spot, directional, "
-        "constant, envmap, sky, sun, sunsky");
+    context.note(element, "left out",
+                 "emitters that are read: area (in a shape), point, spot, directional, constant, "
+                 "envmap, sky, sun, sunsky");
+    p.ignore_all();
   }
   p.ignore({"samplingweight"});
   p.note_unread(context.notes);

@@ -23,6 +23,16 @@ ImportedMaterial on_both_sides(const ImportedMaterial& m,
   return out;
 }
 
+/// Whether a coating may lie over it: it is opaque, and no coating itself (LACUNA_materials).
+bool can_be_coated(const ImportedMaterial& m) {
+  using Type = ImportedMaterial::Type;
+  if (m.type == Type::mixture) {
+    return std::ranges::all_of(m.parts, [](const auto& p) { return can_be_coated(*p.material); });
+  }
+  return m.type != Type::dielectric && m.type != Type::thin_dielectric &&
+         m.type != Type::diffuse_transmission && m.type != Type::coating && m.transmission == 0;
+}
+
 }  // namespace
 
 std::vector<Materials::Pointer> Materials::inner(const Parameters& p, std::size_t least,
@@ -100,12 +110,19 @@ void Materials::read_mixture(const Parameters& p, ImportedMaterial& m) {
 }
 
 void Materials::read_coating(const Parameters& p, ImportedMaterial& m) {
+  const Pointer base = inner(p, 1, 1)[0];
+  if (!can_be_coated(*base)) {
+    m = *base;
+    p.ignore_all();
+    return context_.note(p.element(), "left out",
+                         "the coat over a BSDF that transmits light or is coated itself");
+  }
   m.type = ImportedMaterial::Type::coating;
   m.ior = relative_index(p, 1.5046);
   read_facets(p, m, p.element().type() == "roughcoating");
-  m.parts = {{inner(p, 1, 1)[0], Rgb(1)}};
-  m.one_sided = m.parts[0].material->one_sided;
-  m.opacity = m.parts[0].material->opacity;
+  m.parts = {{base, Rgb(1)}};
+  m.one_sided = base->one_sided;
+  m.opacity = base->opacity;
   m.thickness = p.number("thickness", 1);
   const ImportedValue absorption = color(p, "sigmaa", 0);
   if (absorption.texture) context_.note(p.element(), "left out", "the texture of its sigmaA");

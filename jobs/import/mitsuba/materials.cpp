@@ -34,17 +34,24 @@ Materials::Read Materials::reader_of(const std::string& type) {
       {"phong", &Materials::read_phong},
       {"ward", &Materials::read_ward},
       {"principled", &Materials::read_principled},
+      {"principledthin", &Materials::read_thin_principled},
+      {"pplastic", &Materials::read_plastic},
       {"null", &Materials::read_null},
+      {"polarizer", &Materials::read_filter},
+      {"retarder", &Materials::read_filter},
+      {"circular", &Materials::read_filter},
       {"twosided", &Materials::read_two_sided},
       {"mask", &Materials::read_mask},
       {"blendbsdf", &Materials::read_blend},
+      {"blend", &Materials::read_blend},
       {"mixturebsdf", &Materials::read_mixture},
+      {"mixture", &Materials::read_mixture},
       {"coating", &Materials::read_coating},
       {"roughcoating", &Materials::read_coating},
       {"bumpmap", &Materials::read_bump_map},
       {"normalmap", &Materials::read_normal_map}};
   const auto found = readers.find(type);
-  return found == readers.end() ? nullptr : found->second;
+  return found == readers.end() ? &Materials::read_other : found->second;
 }
 
 Materials::Pointer Materials::of(const SceneElement& bsdf) {
@@ -54,13 +61,6 @@ Materials::Pointer Materials::of(const SceneElement& bsdf) {
   }
   if (open_.size() >= max_bsdf_depth) bsdf.fail("is nested more than 16 BSDFs deep");
   const Read read = reader_of(bsdf.type());
-  if (read == nullptr) {
-    bsdf.fail(
-        "is a BSDF that is not read; allowed: diffuse, roughdiffuse, difftrans, conductor, "
-        "roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, "
-        "phong, ward, principled, null, twosided, mask, blendbsdf, mixturebsdf, coating, "
-        "roughcoating, bumpmap, normalmap");
-  }
   open_.push_back(&bsdf);
   const Parameters p = context_.parameters(bsdf);
   ImportedMaterial m;
@@ -104,6 +104,16 @@ ImportedValue Materials::color(const Parameters& p, std::string_view name, float
   return value.value;
 }
 
+double Materials::number(const Parameters& p, std::string_view name, double fallback) {
+  if (!p.has(name)) return fallback;
+  const ImportedValue value = color(p, name, 0);
+  if (!value.texture) return grey_of(value.value);
+  const double mean = grey_of(value.value) / 2;
+  context_.note(p.element(), "approximated",
+                fmt::format("{} stands for the texture of its {}", mean, name));
+  return mean;
+}
+
 void Materials::read_diffuse_color(const Parameters& p, std::string_view name, float fallback,
                                    ImportedMaterial& m) {
   const TexturedValue value = textures_.value(p, name, Rgb(fallback));
@@ -139,9 +149,9 @@ void Materials::read_facets(const Parameters& p, ImportedMaterial& m, bool rough
                                  in_quotes(distribution)));
   }
   if (distribution == "phong" || distribution == "as") {
-    context_.note(
-        p.element(), "approximated",
-        fmt::format("facets distributed as {} are Beckmann's of the same alpha", distribution));
+    context_.note(p.element(), "approximated",
+                  fmt::format("facets of the distribution {} become Beckmann's of the same alpha",
+                              distribution));
   }
   p.ignore({"samplevisible"});
   const TexturedValue alpha = textures_.value(p, "alpha", Rgb(.1F));
@@ -224,7 +234,7 @@ void Materials::read_dielectric(const Parameters& p, ImportedMaterial& m) {
 void Materials::read_plastic(const Parameters& p, ImportedMaterial& m) {
   m.type = ImportedMaterial::Type::plastic;
   m.ior = relative_index(p, polypropylene);
-  read_facets(p, m, p.element().type() == "roughplastic");
+  read_facets(p, m, p.element().type() != "plastic");
   read_diffuse_color(p, "diffusereflectance", .5F, m);
   m.reflectance = color(p, "specularreflectance", 1);
   m.nonlinear = p.boolean("nonlinear", false);
@@ -260,30 +270,68 @@ void Materials::read_principled(const Parameters& p, ImportedMaterial& m) {
   m.type = ImportedMaterial::Type::standard;
   m.one_sided = false;
   read_diffuse_color(p, "basecolor", .5F, m);
-  m.roughness = p.number("roughness", .5);
-  m.metallic = p.number("metallic", 0);
-  m.anisotropy = std::sqrt(std::clamp(p.number("anisotropic", 0), 0.0, 1.0));
-  m.transmission = p.number("spectrans", 0);
-  m.coat = p.number("clearcoat", 0);
-  m.coat_roughness = std::sqrt(.1 + (.001 - .1) * p.number("clearcoatgloss", 0));
-  m.sheen = Rgb(static_cast<float>(p.number("sheen", 0)));
+  const ImportedValue roughness = color(p, "roughness", .5F), metallic = color(p, "metallic", 0);
+  m.roughness = grey_of(roughness.value);
+  m.metallic = grey_of(metallic.value);
+  m.roughness_texture = roughness.texture;
+  m.metallic_texture = metallic.texture;
+  m.anisotropy = std::sqrt(std::clamp(number(p, "anisotropic", 0), 0.0, 1.0));
+  m.transmission = number(p, "spectrans", 0);
+  m.coat = number(p, "clearcoat", 0);
+  m.coat_roughness =
+      std::sqrt(.1 + (.001 - .1) * std::clamp(number(p, "clearcoatgloss", 0), 0.0, 1.0));
+  m.sheen = Rgb(static_cast<float>(number(p, "sheen", 0)));
   if (p.has("eta")) {
     m.ior = index(p, "eta", 1.5);
   } else {
     // specular = .5 is eta = 1.5: r0 = .08 specular (Burley 2012).
-    const double r = std::sqrt(.08 * p.number("specular", .5));
+    const double r = std::sqrt(.08 * std::clamp(number(p, "specular", .5), 0.0, 1.0));
     m.ior = (1 + r) / (1 - r);
   }
   for (double* unit : {&m.roughness, &m.metallic, &m.transmission, &m.coat, &m.coat_roughness}) {
     *unit = std::clamp(*unit, 0.0, 1.0);
   }
+  for (const char* unread : {"spectint", "flatness", "difftrans"}) {
+    if (number(p, unread, 0) != 0) {
+      context_.note(p.element(), "left out", fmt::format("its {}", unread));
+    }
+  }
+  if (m.sheen == Rgb(0)) p.ignore({"sheentint"});
   context_.note(p.element(), "approximated", "the nearest metallic-roughness material");
+}
+
+void Materials::read_thin_principled(const Parameters& p, ImportedMaterial& m) {
+  read_principled(p, m);
+  m.thin = true;
 }
 
 void Materials::read_null(const Parameters&, ImportedMaterial& m) {
   m.one_sided = false;
   m.diffuse = {{0, 0, 0}, nullptr};
   m.opacity.value = Rgb(0);
+}
+
+/// A filter of polarised light: unpolarised light passes through it.
+void Materials::read_filter(const Parameters& p, ImportedMaterial& m) {
+  read_null(p, m);
+  p.ignore_all();
+  context_.note(p.element(), "left out", "light has no polarisation");
+}
+
+/// What the BSDF says of its colour, or the one BSDF within it.
+void Materials::read_other(const Parameters& p, ImportedMaterial& m) {
+  const auto parts = p.objects("bsdf");
+  if (parts.size() == 1) {
+    m = *of(*parts[0]);
+  } else {
+    for (const char* name : {"reflectance", "diffusereflectance", "basecolor", "color"}) {
+      if (p.has(name)) read_diffuse_color(p, name, .5F, m);
+    }
+  }
+  p.ignore_all();
+  context_.note(
+      p.element(), "approximated",
+      parts.size() == 1 ? "the BSDF within it stands for it" : "a diffuse BSDF stands for it");
 }
 
 }  // namespace lacuna::mitsuba

@@ -14,7 +14,8 @@ class Materials {
   Materials(ReadContext& context, Textures& textures) : context_(context), textures_(textures) {}
 
   using Pointer = std::shared_ptr<const ImportedMaterial>;
-  /// Throws SceneError for a BSDF that is not read, and for BSDFs within themselves.
+  /// Another one stands for a BSDF that is not read, with a note. Throws SceneError for BSDFs
+  /// within themselves.
   Pointer of(const SceneElement& bsdf);
   /// That of a shape without one.
   Pointer fallback();
@@ -33,7 +34,10 @@ class Materials {
   void read_phong(const Parameters& p, ImportedMaterial& m);
   void read_ward(const Parameters& p, ImportedMaterial& m);
   void read_principled(const Parameters& p, ImportedMaterial& m);
+  void read_thin_principled(const Parameters& p, ImportedMaterial& m);
   void read_null(const Parameters& p, ImportedMaterial& m);
+  void read_filter(const Parameters& p, ImportedMaterial& m);
+  void read_other(const Parameters& p, ImportedMaterial& m);
   // Of others, material_wrappers.cpp.
   void read_two_sided(const Parameters& p, ImportedMaterial& m);
   void read_mask(const Parameters& p, ImportedMaterial& m);
@@ -49,6 +53,8 @@ class Materials {
   void read_diffuse_color(const Parameters& p, std::string_view name, float fallback,
                           ImportedMaterial& m);
   ImportedValue color(const Parameters& p, std::string_view name, float fallback);
+  /// A number whose texture, if it has one, is not read: half of it stands for that.
+  double number(const Parameters& p, std::string_view name, double fallback);
   /// The BSDFs within, at least `least` and at most `most`.
   std::vector<Pointer> inner(const Parameters& p, std::size_t least, std::size_t most);
   /// The texture within a bumpmap or normalmap.

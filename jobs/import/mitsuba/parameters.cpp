@@ -81,7 +81,7 @@ std::vector<double> numbers_in(const SceneElement& at, const std::string& text, 
 
 const SceneElement* Parameters::peek(std::string_view name) const {
   for (const SceneElement& child : element_.children) {
-    if (child.name() == name) return &child;
+    if (child.name() == name && !child.lacks_file()) return &child;
   }
   return nullptr;
 }
@@ -165,7 +165,10 @@ std::optional<Rgb> Parameters::color(std::string_view name) const {
 M44d Parameters::transform(std::string_view name) const {
   const SceneElement* found = find(name);
   if (found == nullptr) return {};
-  if (found->tag != "transform") found->fail("allowed: <transform>; animations are not read");
+  if (found->tag == "animation" && !found->children.empty()) {
+    return transform_of(found->children[0]);
+  }
+  if (found->tag != "transform") found->fail("allowed: <transform>, <animation>");
   return transform_of(*found);
 }
 
@@ -207,10 +210,17 @@ void Parameters::ignore_all() const {
 
 void Parameters::note_unread(std::vector<ImportNote>& notes) const {
   for (const SceneElement& child : element_.children) {
-    if (child.read) continue;
+    if (child.read) {
+      if (child.tag == "animation") {
+        notes.push_back({child.place, element_.label(), "approximated",
+                         "stands still where its animation begins"});
+      }
+      continue;
+    }
     child.read = true;
     notes.push_back({child.place, element_.label(), "left out",
-                     fmt::format("its {} is not read", child.label())});
+                     child.lacks_file() ? fmt::format("{} is missing", child.attribute("filename"))
+                                        : fmt::format("its {} is not read", child.label())});
   }
 }
 

@@ -45,7 +45,7 @@ class Parameters {
   std::optional<V3d> vector(std::string_view name) const;
   /// A colour: rgb, srgb, spectrum, blackbody, or a number as grey.
   std::optional<Rgb> color(std::string_view name) const;
-  /// `to_world` or another; the identity if it is absent.
+  /// `to_world` or another; the identity if it is absent, the first of an animation.
   M44d transform(std::string_view name) const;
   /// An object of this name (texture, bsdf, ...), or null.
   const SceneElement* object(std::string_view name) const;

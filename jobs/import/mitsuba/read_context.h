@@ -16,14 +16,14 @@ struct ReadContext {
   const SceneIds& ids;
   std::vector<ImportNote>& notes;
   bool reads_mtl = false;                    ///< Mitsuba 0.6 does, later ones do not
-  std::vector<std::string> missing_files{};  ///< place and name of each
+  std::vector<std::string> folders{""};      ///< where files are looked for, within `folder`
+  std::vector<std::string> missing_files{};  ///< place, name and reason of each
 
   Parameters parameters(const SceneElement& element) const { return {element, ids}; }
   void note(const SceneElement& at, std::string treatment, std::string how) const {
     notes.push_back({at.place, at.label(), std::move(treatment), std::move(how)});
   }
-  /// A file that `at` names; none, and an entry in missing_files, if there is no such file. Throws
-  /// SceneError for a name outside of the folder.
+  /// A file that `at` names; none, and an entry in missing_files, if the folder has no such file.
   std::optional<std::filesystem::path> file(const SceneElement& at, const std::string& name);
 };
 

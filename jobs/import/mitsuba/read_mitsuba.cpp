@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 
+#include "base/json/json_cursor.h"
 #include "jobs/import/mitsuba/emitters.h"
 #include "jobs/import/mitsuba/scene_element.h"
 #include "jobs/import/mitsuba/sensors.h"
@@ -36,7 +39,28 @@ std::vector<ImportNote> joined(std::vector<ImportNote> notes) {
   return out;
 }
 
+/// Elements of the scene itself that others refer to.
+bool is_referred_to(const SceneElement& e) {
+  constexpr std::array<std::string_view, 11> tags{"bsdf",  "texture", "alias",     "medium",
+                                                  "ref",   "rgb",     "spectrum",  "volume",
+                                                  "phase", "rfilter", "subsurface"};
+  return std::ranges::find(tags, e.tag) != tags.end() || (e.tag == "emitter" && is_of_shapes(e));
+}
+
+/// A further folder of files. What lies outside of the scene's is not searched.
+void add_folder(ReadContext& context, const SceneElement& e) {
+  std::string name = e.attribute("value");
+  if (!find_within(context.folder, name)) {
+    context.note(e, "left out",
+                 fmt::format("{} lies outside of the folder of the scene", in_quotes(name)));
+    return;
+  }
+  if (!name.ends_with('/')) name += '/';
+  context.folders.push_back(name);
+}
+
 void read_child(ReadContext& context, const SceneElement& e, Shapes& shapes, ImportedScene& scene) {
+  if (is_referred_to(e)) return;
   if (e.tag == "shape") {
     shapes.add(e);
   } else if (e.tag == "emitter") {
@@ -45,14 +69,30 @@ void read_child(ReadContext& context, const SceneElement& e, Shapes& shapes, Imp
     add_sensor(context, e, scene);
   } else if (e.tag == "integrator") {
     read_integrator(context, e, scene);
-  } else if (e.tag == "path" || e.tag == "sampler" || e.tag == "film") {
+  } else if (e.tag == "path") {
+    add_folder(context, e);
+  } else if (e.tag == "sampler" || e.tag == "film") {
     context.parameters(e).ignore_all();
-    if (e.tag == "path") e.fail("is a further folder; allowed: files in the folder of the scene");
-  } else if (e.tag != "bsdf" && e.tag != "texture" && e.tag != "alias" && e.tag != "medium" &&
-             e.tag != "ref" && e.tag != "spectrum" && e.tag != "rgb") {
+  } else {
     e.fail(
         "is no element that is read; allowed: shape, emitter, sensor, integrator, bsdf, texture, "
-        "medium, default, include, ref, alias");
+        "medium, default, include, ref, alias, path");
+  }
+}
+
+/// Enters the spectra in files that do not exist.
+void find_lacking_files(ReadContext& context, const SceneElement& e) {
+  if (e.lacks_file()) {
+    context.missing_files.push_back(
+        fmt::format("{}: {} does not exist", e.place, e.attribute("filename")));
+  }
+  for (const SceneElement& child : e.children) find_lacking_files(context, child);
+}
+
+/// Emitters of shapes that no shape refers to.
+void note_unused_emitters(ReadContext& context, const SceneElement& root) {
+  for (const SceneElement& e : root.children) {
+    if (e.tag == "emitter" && !e.read) context.note(e, "left out", "no shape refers to it");
   }
 }
 
@@ -61,18 +101,21 @@ ImportedScene read_root(const SceneElement& root, const std::filesystem::path& f
   const SceneIds ids(root);
   ImportedScene scene;
   ReadContext context{folder, ids, scene.notes, root.attribute("version").starts_with("0.")};
+  find_lacking_files(context, root);
   Textures textures(context);
   Materials materials(context, textures);
   Shapes shapes(context, textures, materials, scene);
   for (const SceneElement& child : root.children) {
     read_child(context, child, shapes, scene);
   }
+  note_unused_emitters(context, root);
   if (missing == MissingFiles::refuse && !context.missing_files.empty()) {
     const std::size_t others = context.missing_files.size() - 1;
-    throw SceneError(fmt::format("{} does not exist{}; --missing skip leaves missing files out",
+    throw SceneError(fmt::format("{}{}; --missing skip leaves such files out",
                                  context.missing_files[0],
-                                 others == 0 ? "" : fmt::format(", nor do {} others", others)));
+                                 others == 0 ? "" : fmt::format(" (and {} more)", others)));
   }
+  if (scene.cameras.empty()) add_default_sensor(context, root, scene);
   scene.notes = joined(std::move(scene.notes));
   return scene;
 }

@@ -122,10 +122,13 @@ class SceneFileReader {
   /// A spectrum that is a file: lines of wavelength and value, which become its `value`.
   void read_spectrum(SceneElement& at) {
     if (folder_.empty()) at.fail("names a file; allowed: a scene without");
+    const auto file = find_within(folder_, at.attribute("filename"));
+    std::error_code none;
+    if (!file || !std::filesystem::exists(*file, none)) return;
     constexpr std::size_t most_bytes = 1 << 20;
     std::string text;
     try {
-      text = read_file(file_within(folder_, at.attribute("filename"), at), most_bytes);
+      text = read_file(*file, most_bytes);
     } catch (const std::exception& e) {
       at.fail(fmt::format("cannot be read: {}", e.what()));
     }
@@ -223,21 +226,27 @@ SceneElement read_scene_text(std::string_view xml, const std::string& label) {
   return SceneFileReader({}).read_text(xml, label);
 }
 
-std::filesystem::path file_within(const std::filesystem::path& folder, const std::string& name,
-                                  const SceneElement& at) {
+std::optional<std::filesystem::path> find_within(const std::filesystem::path& folder,
+                                                 const std::string& name) {
   std::string slashed = name;
   std::replace(slashed.begin(), slashed.end(), '\\', '/');
   const std::filesystem::path relative(slashed);
-  const auto refuse = [&] {
-    at.fail(fmt::format("names {}; allowed: files in the folder of the scene", in_quotes(name)));
-  };
-  if (name.empty()) at.fail("names no file");
-  if (relative.is_absolute()) refuse();
+  if (name.empty() || relative.is_absolute()) return {};
   const auto root = std::filesystem::weakly_canonical(folder);
   const auto file = std::filesystem::weakly_canonical(root / relative);
   const auto [end, rest] = std::mismatch(root.begin(), root.end(), file.begin(), file.end());
-  if (end != root.end() || rest == file.end()) refuse();
+  if (end != root.end() || rest == file.end()) return {};
   return file;
+}
+
+std::filesystem::path file_within(const std::filesystem::path& folder, const std::string& name,
+                                  const SceneElement& at) {
+  if (name.empty()) at.fail("names no file");
+  const auto file = find_within(folder, name);
+  if (!file) {
+    at.fail(fmt::format("names {}; allowed: files in the folder of the scene", in_quotes(name)));
+  }
+  return *file;
 }
 
 }  // namespace lacuna::mitsuba

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,6 +22,8 @@ struct SceneElement {
   const std::string& attribute(std::string_view name) const;
   bool has(std::string_view name) const;
   const std::string& type() const { return attribute("type"); }
+  /// A spectrum whose file does not exist: the parameter is as if it were not there.
+  bool lacks_file() const { return tag == "spectrum" && has("filename") && !has("value"); }
   /// The `name` without case and underscores: Mitsuba 2 and 3 write to_world for toWorld.
   std::string name() const;
   /// `bsdf "wall" (diffuse)`, as in messages.
@@ -44,8 +47,11 @@ SceneElement read_scene_file(const std::filesystem::path& file);
 /// The same of a text, for which nothing can be included.
 SceneElement read_scene_text(std::string_view xml, const std::string& label);
 
-/// The file that `name` says, relative to `folder`. Throws SceneError with `at` if it would lie
-/// outside, also through a link. It need not exist.
+/// The file that `name` says, relative to `folder`; none if it would lie outside, also through a
+/// link. It need not exist.
+std::optional<std::filesystem::path> find_within(const std::filesystem::path& folder,
+                                                 const std::string& name);
+/// The same; throws SceneError with `at` if it would lie outside.
 std::filesystem::path file_within(const std::filesystem::path& folder, const std::string& name,
                                   const SceneElement& at);
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/json/json_cursor.h"
+#include "renderer/core/bounds.h"
 
 namespace lacuna::mitsuba {
 namespace {
@@ -91,14 +92,36 @@ M44d camera_frame(const Parameters& p, std::array<double, 3>& scales) {
   return out;
 }
 
+/// The type that stands for another one; empty: none does.
+std::string nearest_type(ReadContext& context, const SceneElement& element) {
+  const std::string& type = element.type();
+  if (type == "perspective" || type == "thinlens" || type == "orthographic" ||
+      type == "spherical") {
+    return type;
+  }
+  if (type == "telecentric") {
+    context.note(element, "approximated", "an orthographic camera, without a lens");
+    return "orthographic";
+  }
+  if (type == "perspective_rdist") {
+    context.note(element, "approximated", "a perspective camera, without radial distortion");
+    return "perspective";
+  }
+  context.note(element, "left out",
+               "sensors that are read: perspective, thinlens, orthographic, spherical");
+  return "";
+}
+
 }  // namespace
 
 void add_sensor(ReadContext& context, const SceneElement& element, ImportedScene& scene) {
   const Parameters p = context.parameters(element);
-  const std::string& type = element.type();
-  if (type != "perspective" && type != "thinlens" && type != "orthographic") {
-    element.fail("is a sensor that is not read; allowed: perspective, thinlens, orthographic");
+  if (element.type() == "batch") {
+    for (const SceneElement* inner : p.objects("sensor")) add_sensor(context, *inner, scene);
+    return p.ignore_all();
   }
+  const std::string type = nearest_type(context, element);
+  if (type.empty()) return p.ignore_all();
   const ImportedPicture picture = picture_of(context, p);
   const double aspect = static_cast<double>(picture.resolution[0]) / picture.resolution[1];
   ImportedCamera camera;
@@ -110,7 +133,9 @@ void add_sensor(ReadContext& context, const SceneElement& element, ImportedScene
                         scene.cameras.empty() ? "" : std::to_string(scene.cameras.size() + 1));
   std::array<double, 3> scales{1, 1, 1};
   camera.to_world = camera_frame(p, scales);
-  if (type == "orthographic") {
+  if (type == "spherical") {
+    camera.projection = Projection::panorama;
+  } else if (type == "orthographic") {
     camera.projection = Projection::orthographic;
     camera.height = 2 * scales[0] / aspect;
     if (std::abs(scales[1] / scales[0] - 1) > 1e-4) {
@@ -130,6 +155,10 @@ void add_sensor(ReadContext& context, const SceneElement& element, ImportedScene
     context.note(element, "left out", "nearClip: what is nearer is seen");
   }
   p.ignore({"farclip", "focusdistance", "shutteropen", "shutterclose"});
+  if (type != element.type()) p.ignore({"apertureradius", "kc"});
+  for (const char* shift : {"principalpointoffsetx", "principalpointoffsety"}) {
+    if (p.number(shift, 0) != 0) context.note(element, "left out", fmt::format("its {}", shift));
+  }
   for (const SceneElement* sampler : p.objects("sampler")) {
     context.parameters(*sampler).ignore_all();
   }
@@ -140,6 +169,28 @@ void add_sensor(ReadContext& context, const SceneElement& element, ImportedScene
     scene.picture.max_depth = depth;
   }
   scene.cameras.push_back(camera);
+}
+
+void add_default_sensor(ReadContext& context, const SceneElement& root, ImportedScene& scene) {
+  Bounds bounds;
+  for (const ImportedShape& shape : scene.shapes) {
+    for (const V3f& x : shape.mesh->positions) bounds.add(V3d(x) * shape.to_world);
+  }
+  if (bounds.empty()) return;
+  const V3d centre = (bounds.low + bounds.high) / 2, size = bounds.size();
+  constexpr double fov = 45 * degree;
+  const double extent = std::max({size.x, size.y, size.z});
+  ImportedCamera camera;
+  camera.name = "camera";
+  camera.place = root.place;
+  scene.picture.resolution = {768, 576};
+  camera.yfov = 2 * std::atan(std::tan(fov / 2) * 576 / 768);
+  // Looks along +z with y up: x to the left.
+  const double z = bounds.low.z - extent / (2 * std::tan(fov / 2));
+  camera.to_world = M44d(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, centre.x, centre.y, z, 1);
+  scene.cameras.push_back(camera);
+  context.note(root, "approximated",
+               "it has no sensor: a camera of 45 degrees that sees all shapes along +z");
 }
 
 void read_integrator(ReadContext& context, const SceneElement& element, ImportedScene& scene) {

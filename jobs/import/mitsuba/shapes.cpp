@@ -73,13 +73,18 @@ void Shapes::add(const SceneElement& shape, const M44d& to_parent) {
   const bool flip = p.boolean("flipnormals", false);
   const auto emitters = p.objects("emitter");
   if (emitters.size() > 1) shape.fail("has more than one emitter");
+  const SceneElement* light = emitters.empty() ? nullptr : emitters[0];
+  if (light != nullptr && light->type() != "area") {
+    context_.note(*light, "left out", "emitters of shapes that are read: area");
+    context_.parameters(*light).ignore_all();
+    light = nullptr;
+  }
   const auto bsdfs = bsdfs_of(p, read_mesh);
   ImportedShape out;
   out.name = shape.attribute("id");
   out.place = shape.place;
-  if (!emitters.empty()) {
-    if (emitters[0]->type() != "area") emitters[0]->fail("is not read in a shape; allowed: area");
-    const Parameters emitter = context_.parameters(*emitters[0]);
+  if (light != nullptr) {
+    const Parameters emitter = context_.parameters(*light);
     out.radiance = textures_.value(emitter, "radiance", Rgb(1)).value;
     emitter.ignore({"samplingweight"});
     emitter.note_unread(context_.notes);
@@ -92,7 +97,7 @@ void Shapes::add(const SceneElement& shape, const M44d& to_parent) {
   for (std::size_t i = 0; i < read_mesh.parts.size(); ++i) {
     const MeshPointer& mesh = read_mesh.parts[i].mesh;
     const auto material = bsdfs[i] != nullptr ? materials_.of(*bsdfs[i])
-                          : emitters.empty()  ? materials_.fallback()
+                          : light == nullptr  ? materials_.fallback()
                                               : materials_.black();
     out.material = with_interior(p, material);
     out.mesh = mesh;
@@ -193,6 +198,16 @@ std::shared_ptr<const ImportedMaterial> Shapes::with_interior(
   auto& filled = filled_[{material.get(), medium}];
   if (filled) return filled;
   const Parameters m = context_.parameters(*medium);
+  // Else a volume or the name of a material, whose coefficients are not known here.
+  bool uniform = medium->type() == "homogeneous" && !m.has("material");
+  for (const char* name : {"sigmat", "albedo", "sigmaa", "sigmas"}) {
+    uniform = uniform && (!m.has(name) || m.color(name));
+  }
+  if (!uniform) {
+    context_.note(*medium, "left out", "media that are read: homogeneous, of uniform coefficients");
+    m.ignore_all();
+    return filled = material;
+  }
   const auto scale = static_cast<float>(m.number("scale", 1));
   const Rgb extinction = m.color("sigmat").value_or(Rgb(1)),
             albedo = m.color("albedo").value_or(Rgb(.75F));
@@ -200,7 +215,7 @@ std::shared_ptr<const ImportedMaterial> Shapes::with_interior(
             scattering = m.color("sigmas").value_or(m.has("sigmaa") ? Rgb(0) : extinction * albedo);
   ImportedMaterial out = *material;
   out.absorption = absorption * scale;
-  if (medium->type() != "homogeneous" || scattering != Rgb(0)) {
+  if (scattering != Rgb(0)) {
     context_.note(*medium, "approximated", "what it absorbs is read, not what it scatters");
   }
   if (material->type != ImportedMaterial::Type::dielectric) {
@@ -236,9 +251,11 @@ Shapes::Read Shapes::read(const Parameters& p) {
     return {{{"", unit_mesh(type)}}, {}};
   }
   if (type == "obj" || type == "ply" || type == "serialized") return load(p, type);
-  p.element().fail(
-      "is a shape that is not read; allowed: obj, ply, serialized, rectangle, cube, sphere, disk, "
-      "cylinder, shapegroup, instance, merge");
+  context_.note(p.element(), "left out",
+                "shapes that are read: obj, ply, serialized, rectangle, cube, sphere, disk, "
+                "cylinder, shapegroup, instance, merge");
+  p.ignore_all();
+  return {};
 }
 
 Shapes::Read Shapes::read_sphere(const Parameters& p) {

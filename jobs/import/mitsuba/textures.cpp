@@ -51,10 +51,17 @@ std::optional<int> channel_of(const SceneElement& at, const std::string& name) {
 std::optional<std::filesystem::path> ReadContext::file(const SceneElement& at,
                                                        const std::string& name) {
   if (folder.empty()) at.fail("names a file; allowed: a scene without");
-  auto path = file_within(folder, name, at);
+  if (name.empty()) at.fail("names no file");
   std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return path;
-  missing_files.push_back(fmt::format("{}: {}", at.place, name));
+  bool within = false;
+  for (const std::string& prefix : folders) {
+    const auto path = find_within(folder, prefix + name);
+    within |= path.has_value();
+    if (path && std::filesystem::is_regular_file(*path, error)) return path;
+  }
+  missing_files.push_back(
+      fmt::format("{}: {} {}", at.place, name,
+                  within ? "does not exist" : "lies outside of the folder of the scene"));
   return {};
 }
 
@@ -91,9 +98,24 @@ TexturedValue Textures::read(const SceneElement& element) {
     p.note_unread(context_.notes);
     return {{Rgb(scale), nullptr}, true};
   }
-  element.fail(
-      "is a texture that is not read; allowed: bitmap, checkerboard, scale, vertexcolors, "
-      "mesh_attribute of vertex_color");
+  return {{mean_of(p), nullptr}, false};
+}
+
+Rgb Textures::mean_of(const Parameters& p) {
+  Rgb sum(0);
+  int colours = 0;
+  for (const SceneElement& child : p.element().children) {
+    if (child.tag != "rgb" && child.tag != "srgb" && child.tag != "spectrum") continue;
+    if (const auto colour = color_of(child)) sum += *colour, ++colours;
+  }
+  const Rgb mean = colours == 0 ? Rgb(.5F) : sum / static_cast<float>(colours);
+  context_.note(p.element(), "approximated",
+                fmt::format("its mean colour, taken as {:.3g} {:.3g} {:.3g}; textures that are "
+                            "read: bitmap, checkerboard, scale, vertexcolors, mesh_attribute of "
+                            "vertex_color",
+                            mean.x, mean.y, mean.z));
+  p.ignore_all();
+  return mean;
 }
 
 TexturedValue Textures::read_bitmap(const SceneElement& element) {

@@ -28,6 +28,8 @@ class Textures {
   TexturedValue read_bitmap(const SceneElement& element);
   TexturedValue read_checkerboard(const SceneElement& element);
   TexturedValue read_scale(const SceneElement& element);
+  /// Of a texture that is not read, with a note.
+  Rgb mean_of(const Parameters& p);
 
   ReadContext& context_;
   std::map<const SceneElement*, TexturedValue> known_;

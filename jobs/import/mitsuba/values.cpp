@@ -96,11 +96,20 @@ Rgb rgb_of_plugin(const SceneElement& e) {
     if (!(kelvin > 0 && kelvin <= 1e6)) e.fail("allowed: above 0, at most 1e6 kelvin");
     return blackbody_rgb(kelvin) * static_cast<float>(child_number(e, "scale", 1));
   }
+  if (type == "srgb" || type == "srgb_d65") {
+    for (const SceneElement& child : e.children) {
+      if (child.name() != "color") continue;
+      child.read = true;
+      const float scale = static_cast<float>(child_number(e, "scale", 1));
+      if (const auto colour = color_of(child)) return *colour * scale;
+    }
+  }
+  if (type == "rawconstant") return Rgb(static_cast<float>(child_number(e, "value", 1)));
   const std::string* values = child_value(e, "values");
   if ((type != "regular" && type != "irregular") || values == nullptr) {
     e.fail(
-        "is a spectrum that is not read; allowed: d65, uniform, blackbody, regular and irregular "
-        "with values");
+        "is a spectrum that is not read; allowed: d65, uniform, blackbody, srgb and srgb_d65 with "
+        "a color, rawconstant, regular and irregular with values");
   }
   const auto samples = numbers_in(e, *values, most_samples);
   std::vector<double> wavelengths;

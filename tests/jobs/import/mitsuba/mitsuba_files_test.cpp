@@ -200,7 +200,7 @@ TEST(MitsubaFiles, SpectraOfFilesAndOfPlugins) {
                      "value='4000'/><float name='scale' value='2'/></spectrum>"));
   EXPECT_TRUE(contains(
       message_of<SceneError>([&] { radiance("<spectrum name='radiance' filename='x.spd'/>"); }),
-      "spectrum \"radiance\" cannot be read"));
+      "x.spd does not exist"));
 }
 
 constexpr const char* named_files = R"(<scene version="0.6.0"><sensor type="orthographic"/>
@@ -216,8 +216,7 @@ TEST(MitsubaFiles, MissingOnesAreNamedOrSkipped) {
   const auto file = folder.write("scene.xml", std::string(named_files));
   const std::string refusal =
       message_of<SceneError>([&] { read_mitsuba(file, MissingFiles::refuse); });
-  EXPECT_TRUE(contains(refusal, "scene.xml:3: gone.png does not exist, nor do 1 others"))
-      << refusal;
+  EXPECT_TRUE(contains(refusal, "scene.xml:3: gone.png does not exist (and 1 more)")) << refusal;
   const ImportedScene scene = read_mitsuba(file, MissingFiles::skip);
   EXPECT_EQ(scene.shapes.size(), 1U);
   ASSERT_EQ(scene.notes.size(), 2U);
@@ -297,6 +296,48 @@ TEST(MitsubaFiles, HostileXmlIsRefused) {
                                "type='twosided' id='b'><ref id='a'/></bsdf><shape type='cube'>"
                                "<ref id='a'/></shape></scene>"),
                        "is within itself: a circle"));
+}
+
+TEST(MitsubaFiles, WhatLiesOutsideOfTheFolderIsMissing) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "in");
+  folder.write("out.ply", std::string("no mesh"));
+  const auto file = folder.write(
+      "in/scene.xml", std::string("<scene version='3.0.0'><sensor type='orthographic'/><shape "
+                                  "type='ply'><string name='filename' value='../out.ply'/></shape>"
+                                  "<shape type='cube'/></scene>"));
+  EXPECT_TRUE(contains(message_of<SceneError>([&] { read_mitsuba(file, MissingFiles::refuse); }),
+                       "../out.ply lies outside of the folder of the scene; --missing skip"));
+  EXPECT_EQ(read_mitsuba(file, MissingFiles::skip).shapes.size(), 1U);
+}
+
+TEST(MitsubaFiles, FurtherFoldersAreSearched) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "data");
+  folder.write("data/a.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  const auto file = folder.write(
+      "scene.xml", std::string("<scene version='3.0.0'><path value='data'/><path value='../x'/>"
+                               "<sensor type='orthographic'/><shape type='obj'><string "
+                               "name='filename' value='a.obj'/></shape></scene>"));
+  const ImportedScene scene = read_mitsuba(file, MissingFiles::refuse);
+  EXPECT_EQ(scene.shapes.size(), 1U);
+  ASSERT_EQ(scene.notes.size(), 1U);
+  EXPECT_EQ(scene.notes[0].how, "\"../x\" lies outside of the folder of the scene");
+}
+
+TEST(MitsubaFiles, MissingSpectraLeaveTheDefault) {
+  const TemporaryFolder folder;
+  const auto file = folder.write(
+      "scene.xml",
+      std::string("<scene version='3.0.0'><sensor type='orthographic'/><shape type='cube'><bsdf "
+                  "type='conductor'><string name='material' value='Au'/>\n<spectrum name='eta' "
+                  "filename='a.spd'/></bsdf></shape></scene>"));
+  EXPECT_TRUE(contains(message_of<SceneError>([&] { read_mitsuba(file, MissingFiles::refuse); }),
+                       "scene.xml:2: a.spd does not exist"));
+  const ImportedScene scene = read_mitsuba(file, MissingFiles::skip);
+  EXPECT_NEAR(scene.shapes.at(0).material->eta.x, .143124 / 1.000277, 1e-6);
+  ASSERT_EQ(scene.notes.size(), 1U);
+  EXPECT_EQ(scene.notes[0].how, "a.spd is missing");
 }
 
 }  // namespace

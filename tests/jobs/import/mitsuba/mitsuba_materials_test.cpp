@@ -8,6 +8,7 @@
 #include "jobs/import/mitsuba/read_mitsuba.h"
 #include "jobs/import/scene_write.h"
 #include "renderer/core/scene_error.h"
+#include "renderer/images/png_write.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -162,6 +163,66 @@ TEST(MitsubaMaterials, ExtensionIsWrittenWhereGltfIsNotExact) {
       mixture["LACUNA_materials"],
       Json({{"type", "mixture"},
             {"parts", {{{"material", 0}, {"weight", .5}}, {{"material", 1}, {"weight", .25}}}}}));
+}
+
+TEST(MitsubaMaterials, OthersHaveStandIns) {
+  const ImportedScene radio = with_bsdf(
+      "<bsdf type='itu-radio-material' id='wall'><string name='type' value='concrete'/>"
+      "<rgb name='color' value='.5 .4 .3'/></bsdf>");
+  EXPECT_EQ(radio.shapes[0].material->diffuse.value, Rgb(.5F, .4F, .3F));
+  ASSERT_EQ(radio.notes.size(), 1U);
+  EXPECT_EQ(radio.notes[0].name, "bsdf \"wall\" (itu-radio-material)");
+  EXPECT_EQ(radio.notes[0].treatment, "approximated");
+  EXPECT_EQ(material_of("<bsdf type='hk'/>").diffuse.value, Rgb(.5F));
+  EXPECT_EQ(material_of("<bsdf type='mine'><bsdf type='plastic'/></bsdf>").type,
+            MaterialType::plastic);
+  EXPECT_EQ(material_of("<bsdf type='polarizer'/>").opacity.value, Rgb(0)) << "light passes";
+  const ImportedMaterial pattern = material_of(
+      "<bsdf type='diffuse'><texture name='reflectance' type='gridtexture'><rgb "
+      "name='color0' value='.2'/><rgb name='color1' value='.6'/></texture></bsdf>");
+  EXPECT_NEAR(pattern.diffuse.value.x, .4, 1e-6);
+}
+
+TEST(MitsubaMaterials, PrincipledWithTextures) {
+  const TemporaryFolder folder;
+  folder.write("r.png", encode_png(1, 1, std::vector<std::uint8_t>{128, 128, 128}));
+  const auto texture = [](const std::string& name) {
+    return "<texture type='bitmap' name='" + name +
+           "'><string name='filename' value='r.png'/><boolean name='raw' value='true'/></texture>";
+  };
+  const auto file =
+      folder.write("scene.xml",
+                   "<scene version='3.0.0'><sensor type='orthographic'/><shape type='cube'><bsdf "
+                   "type='principled'>" +
+                       texture("roughness") + texture("metallic") + texture("clearcoat") +
+                       "<float name='spec_tint' value='0'/></bsdf></shape></scene>");
+  const ImportedScene scene = read_mitsuba(file, MissingFiles::refuse);
+  const ImportedMaterial& m = *scene.shapes.at(0).material;
+  EXPECT_EQ(m.roughness, 1);
+  EXPECT_EQ(m.metallic, 1);
+  EXPECT_EQ(m.roughness_texture->file.filename(), "r.png");
+  EXPECT_EQ(m.metallic_texture->file.filename(), "r.png");
+  EXPECT_EQ(m.coat, .5);
+  ASSERT_EQ(scene.notes.size(), 2U);
+  EXPECT_EQ(scene.notes[0].how, "0.5 stands for the texture of its clearcoat");
+}
+
+TEST(MitsubaMaterials, CoatsLieOverOpaqueBsdfsOnly) {
+  for (const char* base : {"<bsdf type='dielectric'/>",
+                           "<bsdf type='coating'><bsdf "
+                           "type='diffuse'/></bsdf>"}) {
+    const ImportedScene scene = with_bsdf("<bsdf type='coating'>" + std::string(base) + "</bsdf>");
+    EXPECT_NE(scene.shapes[0].material->parts.empty(), false || base[12] == 'c') << base;
+    ASSERT_EQ(scene.notes.size(), 1U);
+    EXPECT_EQ(scene.notes[0].treatment, "left out");
+  }
+}
+
+TEST(MitsubaMaterials, SpectraThatWrapAColour) {
+  const ImportedMaterial m = material_of(
+      "<bsdf type='diffuse'><spectrum type='srgb' name='reflectance'><rgb name='color' value='.2 "
+      ".3 .4'/></spectrum></bsdf>");
+  EXPECT_EQ(m.diffuse.value, Rgb(.2F, .3F, .4F));
 }
 
 }  // namespace
