@@ -18,6 +18,8 @@ FAULTS = [
     Fault("no distance in a connection", "renderer/path/connect.h",
           "c.contribution = scattered * emitted / c.distance2;",
           "c.contribution = scattered * emitted;"),
+    Fault("mixtures weigh their parts without colour", "renderer/materials/lobes.cpp",
+          "further->scale = e.scale;", "further->scale = Rgb(luminance(e.scale));"),
     Fault("a direction's density without its facets", "renderer/materials/bsdf.cpp",
           "return {s.f, Pdf<SolidAngle>(s.pdf)};",
           "return {s.f, Pdf<SolidAngle>(float(c.diffuse) * dot(wi, n) * inv_pi)};"),
