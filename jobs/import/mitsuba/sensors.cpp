@@ -198,7 +198,7 @@ void read_integrator(ReadContext& context, const SceneElement& element, Imported
   for (const SceneElement* inner : p.objects("integrator")) {
     read_integrator(context, *inner, scene);
   }
-  if (element.type() == "direct") scene.picture.max_depth = 2;
+  if (element.type().starts_with("direct")) scene.picture.max_depth = 2;
   if (p.has("maxdepth")) {
     const int depth = p.integer("maxdepth", -1);
     if (depth > 0) scene.picture.max_depth = depth;

@@ -33,6 +33,7 @@ std::optional<Version> of_material(std::string_view type) {
 }  // namespace
 
 std::optional<Version> find_version(const std::filesystem::path& file) {
+  const Context context(file, Version::v4);  // for the paths of includes
   Tokens tokens(file);
   std::string_view statement;
   int texts = 0;         // since the statement
@@ -43,9 +44,15 @@ std::optional<Version> find_version(const std::filesystem::path& file) {
       texts = 0;
       if (contains<4>({"Option", "ColorSpace", "Attribute", "Import"}, statement))
         return Version::v4;
+      if (statement == "WorldEnd") return Version::v3;
     }
     if (token->kind != Token::Kind::text) continue;
     ++texts;
+    if (statement == "Include" && texts == 1) {
+      const auto included = context.resolve(std::string(token->text), token->place);
+      std::error_code none;
+      if (std::filesystem::is_regular_file(included, none)) tokens.include(included, token->place);
+    }
     std::optional<Version> found;
     if (statement == "Film" && texts == 1) found = of_film(token->text);
     if ((statement == "Material" && texts == 1) || (statement == "MakeNamedMaterial" && is_type)) {

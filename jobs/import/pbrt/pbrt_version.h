@@ -7,8 +7,8 @@
 
 namespace lacuna::pbrt {
 
-/// The version that the main file (without its includes) is written for: by its film, materials,
-/// texture types and statements. None if there is no such statement.
+/// The version that a file and its includes are written for: by film, materials, texture types and
+/// statements, the first of them. None if there is no such statement.
 std::optional<Version> find_version(const std::filesystem::path& file);
 
 }  // namespace lacuna::pbrt

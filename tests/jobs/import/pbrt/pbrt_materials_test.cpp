@@ -279,6 +279,10 @@ TEST(PbrtMaterials, TheVersionIsThatOfTheFirstStatementThatTells) {
               1e-6);
   EXPECT_NE(noted(PbrtFolder().import("WorldBegin")).find("no statement of it shows"),
             std::string::npos);
+  EXPECT_EQ(noted(PbrtFolder().import("WorldBegin WorldEnd")), "");
+  const PbrtFolder folder;
+  folder.write("film.pbrt", v3_film);
+  EXPECT_EQ(noted(folder.import("Include \"film.pbrt\" WorldBegin")), "");
 }
 
 /// glTF's roughness is the square root of alpha, which is a power of pbrt's roughness.
