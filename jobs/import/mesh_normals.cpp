@@ -22,6 +22,25 @@ void add_smooth_normals(ImportedMesh& mesh) {
   }
 }
 
+std::vector<V3f> unit_normals(const ImportedMesh& mesh) {
+  std::vector<V3f> out = mesh.normals;
+  ImportedMesh smooth;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const float length = out[i].length();
+    if (length > 0 && std::isfinite(length)) {
+      out[i] /= length;
+      continue;
+    }
+    if (smooth.normals.empty()) {
+      smooth.positions = mesh.positions;
+      smooth.triangles = mesh.triangles;
+      add_smooth_normals(smooth);
+    }
+    out[i] = smooth.normals[i];
+  }
+  return out;
+}
+
 void orient_by_normals(ImportedMesh& mesh) {
   if (mesh.normals.empty()) return;
   for (auto& t : mesh.triangles) {

@@ -14,6 +14,7 @@
 #include "jobs/import/imported_materials.h"
 #include "jobs/import/imported_textures.h"
 #include "jobs/import/job_write.h"
+#include "jobs/import/mesh_normals.h"
 #include "renderer/core/scene_error.h"
 
 namespace lacuna {
@@ -63,7 +64,7 @@ class SceneWriter {
     const ImportedMesh& m = flipped ? turned : mesh;
     OrderedJson& json = found->second;
     json["attributes"]["POSITION"] = document_.add_positions(m.positions);
-    if (!m.normals.empty()) json["attributes"]["NORMAL"] = document_.add_vectors(unit(m.normals));
+    if (!m.normals.empty()) json["attributes"]["NORMAL"] = document_.add_vectors(unit_normals(m));
     if (!m.uvs.empty()) {
       std::vector<V2f> uvs = m.uvs;  // glTF's v points down
       for (V2f& uv : uvs) uv.y = 1 - uv.y;
@@ -74,12 +75,8 @@ class SceneWriter {
     return json;
   }
 
-  static std::vector<V3f> unit(std::vector<V3f> normals) {
-    for (V3f& n : normals) {
-      const float length = n.length();
-      n = length > 0 ? n / length : V3f(0, 0, 1);
-    }
-    return normals;
+  static const std::string& name_of(const ImportedShape& shape) {
+    return shape.name.empty() ? shape.mesh->name : shape.name;
   }
 
   /// Textures of a mesh without coordinates show their upper left corner only.
@@ -88,13 +85,13 @@ class SceneWriter {
     std::set<const ImportedMaterial*> seen;
     const bool lit = shape.radiance && shape.radiance->texture;
     if (!lit && !is_textured(*shape.material, seen)) return;
-    notes_.push_back({shape.place, shape.name.empty() ? shape.mesh->name : shape.name,
-                      "approximated", "it has textures and no texture coordinates"});
+    notes_.push_back({shape.place, name_of(shape), "approximated",
+                      "it has textures and no texture coordinates"});
   }
 
   void add(const ImportedShape& shape) {
     if (shape.mesh->triangles.empty()) {
-      notes_.push_back({shape.place, shape.name, "left out", "it has no triangles"});
+      notes_.push_back({shape.place, name_of(shape), "left out", "it has no triangles"});
       return;
     }
     note_lacking_uvs(shape);
@@ -104,8 +101,8 @@ class SceneWriter {
     if (added) {
       OrderedJson primitive = geometry(*shape.mesh, shape.flipped);
       primitive["material"] = material;
-      const std::string& name = shape.name.empty() ? shape.mesh->name : shape.name;
-      found->second = document_.add("meshes", {{"name", name}, {"primitives", {primitive}}});
+      found->second =
+          document_.add("meshes", {{"name", name_of(shape)}, {"primitives", {primitive}}});
     }
     OrderedJson node;
     if (!shape.name.empty()) node["name"] = shape.name;

@@ -324,6 +324,9 @@ Shapes::Read Shapes::load(const Parameters& p, const std::string& kind) {
     out.parts.push_back({material, std::make_shared<const ImportedMesh>(std::move(mesh))});
     if (by_winding) wound_.insert(out.parts.back().mesh.get());
   }
+  if (out.parts.empty()) {
+    context_.note(p.element(), "left out", fmt::format("{} has no triangles", name));
+  }
   for (const std::string& library : read.libraries) {
     out.libraries.push_back((std::filesystem::path(name).parent_path() / library).string());
   }

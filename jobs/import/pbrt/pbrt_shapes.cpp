@@ -216,7 +216,10 @@ std::optional<Geometry> ShapeReader::read(const std::string& type, const Paramet
   } else if (type == "sphere" || type == "cylinder" || type == "disk" || type == "cone" ||
              type == "paraboloid") {
     const auto made = turned(type, p);
-    if (!made) return {};
+    if (!made) {
+      context_.left_out(p.place(), p.owner(), "it has no area");
+      return {};
+    }
     out.mesh = made->mesh;
     out.to_object = made->to_object;
     context_.approximated(p.place(), p.owner(),
@@ -233,7 +236,11 @@ std::optional<Geometry> ShapeReader::read(const std::string& type, const Paramet
                      "curve, hyperboloid, heightfield, nurbs",
                      type));
   }
-  if (out.mesh == nullptr || out.mesh->triangles.empty()) return {};
+  if (out.mesh == nullptr) return {};
+  if (out.mesh->triangles.empty()) {
+    context_.left_out(p.place(), p.owner(), "it has no triangles");
+    return {};
+  }
   // pbrt-v3 turns no normals that the file states, and these decide what is in front.
   if (context_.is_v3() && !out.mesh->normals.empty() &&
       (type == "trianglemesh" || type == "plymesh")) {

@@ -22,9 +22,10 @@ void Tokens::open(const std::filesystem::path& file) {
   const auto relative = std::filesystem::relative(file, folder_, none);
   contents_.push_back(read_unzipped(file, std::min(max_file_bytes, max_total_bytes - bytes_)));
   bytes_ += contents_.back().size();
-  files_.push_back({std::filesystem::weakly_canonical(file),
-                    std::make_shared<const std::string>((none ? file : relative).string()),
-                    contents_.back()});
+  files_.push_back(
+      {std::filesystem::weakly_canonical(file),
+       std::make_shared<const std::string>((none || relative.empty() ? file : relative).string()),
+       contents_.back()});
 }
 
 void Tokens::include(const std::filesystem::path& file, const Place& place) {

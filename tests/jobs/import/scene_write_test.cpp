@@ -265,5 +265,28 @@ TEST(SceneWrite, RoundingBeyondOneIsNoNote) {
   EXPECT_EQ(notes.size(), 1U);
 }
 
+TEST(SceneWrite, NormalsWithoutALengthAreThoseOfTheTriangles) {
+  const TemporaryFolder folder;
+  ImportedScene scene = scene_of({});
+  ImportedMesh mesh;
+  mesh.name = "tilted";
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}};
+  mesh.normals = {{0, 2, 0}, {0, 0, 0}, V3f(std::nanf(""))};
+  mesh.triangles = {{0, 1, 2}};
+  scene.shapes[0].mesh = std::make_shared<const ImportedMesh>(mesh);
+  for (const bool flipped : {false, true}) {
+    scene.shapes[0].flipped = flipped;
+    const SceneData data = loaded(scene, folder);
+    ASSERT_EQ(data.meshes[0].normals.size(), 3U);
+    for (const V3f& n : data.meshes[0].normals) EXPECT_EQ(n, V3f(0, flipped ? -1 : 1, 0));
+  }
+  mesh.triangles.clear();
+  scene.shapes.emplace_back(scene.shapes[0]).mesh = std::make_shared<const ImportedMesh>(mesh);
+  std::vector<ImportNote> notes;
+  loaded(scene, folder, &notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0].name, "tilted");
+}
+
 }  // namespace
 }  // namespace lacuna

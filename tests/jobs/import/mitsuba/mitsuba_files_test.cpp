@@ -213,6 +213,14 @@ constexpr const char* named_files = R"(<scene version="0.6.0"><sensor type="orth
 TEST(MitsubaFiles, MissingOnesAreNamedOrSkipped) {
   const TemporaryFolder folder;
   folder.write("there.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  folder.write("empty.obj", std::string("# nothing\n"));
+  const ImportedScene empty = read_mitsuba(
+      folder.write("e.xml", std::string("<scene version='0.6.0'><sensor type='orthographic'/>"
+                                        "<shape type='obj'><string name='filename' "
+                                        "value='empty.obj'/></shape></scene>")),
+      MissingFiles::refuse);
+  ASSERT_EQ(empty.notes.size(), 1U);
+  EXPECT_EQ(empty.notes[0].how, "empty.obj has no triangles");
   const auto file = folder.write("scene.xml", std::string(named_files));
   const std::string refusal =
       message_of<SceneError>([&] { read_mitsuba(file, MissingFiles::refuse); });

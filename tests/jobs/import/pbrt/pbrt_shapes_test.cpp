@@ -254,5 +254,18 @@ TEST(PbrtShapes, FilesOutsideOfTheFolderAreMissing) {
   EXPECT_EQ(PbrtFolder().import(text, MissingFiles::skip).shapes.size(), 2);
 }
 
+TEST(PbrtShapes, WithoutTrianglesTheyAreNoted) {
+  const PbrtFolder folder;
+  folder.write("a.ply",
+               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+               "property float z\nend_header\n0 0 0\n");
+  const auto scene = folder.import(v4_film +
+                                   "WorldBegin Shape \"plymesh\" \"string filename\" \"a.ply\" "
+                                   "Shape \"cylinder\" \"float zmin\" 1 \"float zmax\" 1");
+  EXPECT_TRUE(scene.shapes.empty());
+  EXPECT_EQ(noted(scene),
+            "Shape \"plymesh\": it has no triangles\nShape \"cylinder\": it has no area\n");
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -148,5 +148,21 @@ TEST(PbrtParameters, TheLastOfOneNameCounts) {
   EXPECT_EQ(scene.notes[0].place, "scene.pbrt:1");
 }
 
+/// Also where the file lies in the working directory, so that its path has no folder.
+TEST(PbrtTokens, PlacesNameTheFile) {
+  const PbrtFolder folder;
+  folder.write("here.pbrt", "\nScale 1 0");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  std::string message;
+  try {
+    read_pbrt("here.pbrt", MissingFiles::refuse);
+  } catch (const SceneError& e) {
+    message = e.what();
+  }
+  std::filesystem::current_path(before);
+  EXPECT_EQ(message.substr(0, 12), "here.pbrt:2:");
+}
+
 }  // namespace
 }  // namespace lacuna
