@@ -63,6 +63,8 @@ FAULTS = [
           "return m.type != Type::dielectric && ", "return ", IMPORT),
     Fault("pbrt's pictures of roughness are those of alpha", PBRT + "pbrt_facets.cpp",
           "to_power(*facets.texture, 0.5)", "to_power(*facets.texture, 1)", IMPORT),
+    Fault("pbrt's media absorb nothing", PBRT + "pbrt_media.cpp",
+          "    out.absorption = medium.absorption;\n", "", IMPORT),
     Fault("metallic and roughness change places", "jobs/import/imported_textures.cpp",
           "{1, green.pixels[i].x, blue.pixels[i].x}", "{1, blue.pixels[i].x, green.pixels[i].x}", IMPORT),
     Fault("shapes do not find the emitters of the scene", MITSUBA + "emitters.cpp",

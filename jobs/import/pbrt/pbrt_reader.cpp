@@ -182,8 +182,7 @@ bool Reader::world_statement(std::string_view name, const Place& place) {
   } else if (name == "MediumInterface") {
     medium_interface(place);
   } else if (name == "MakeNamedMedium") {
-    typed_statement(name, place);
-    context_.left_out(place, "MakeNamedMedium", "media: space is empty");
+    named_medium(place);
   } else {
     return false;
   }
@@ -258,11 +257,26 @@ void Reader::attribute(const Place& place) {
   state_.defaults[target] = std::make_shared<const Parameters>(std::move(p));
 }
 
+void Reader::named_medium(const Place& place) {
+  const std::string name = text(place, "the name of a medium");
+  Parameters p(tokens_, place, fmt::format("medium \"{}\"", name));
+  add_defaults(p, "medium");
+  media_[name] = std::make_shared<const Medium>(read_medium(context_, name, p));
+}
+
+/// The second name is that of the outside; one name stands for both.
 void Reader::medium_interface(const Place& place) {
-  bool any = !text(place, "the name of a medium").empty();
-  if (tokens_.peek() && tokens_.peek()->kind == Token::Kind::text)
-    any |= !tokens_.next()->text.empty();
-  if (any) context_.left_out(place, "MediumInterface", "media: space is empty");
+  const std::string inside = text(place, "the name of a medium");
+  std::string outside = inside;
+  if (tokens_.peek() && tokens_.peek()->kind == Token::Kind::text) outside = tokens_.next()->text;
+  if (!outside.empty()) {
+    context_.left_out(place, "MediumInterface", "the medium outside: space is empty");
+  }
+  const auto found = media_.find(inside);
+  state_.inside = found == media_.end() ? nullptr : found->second;
+  if (!inside.empty() && found == media_.end()) {
+    context_.left_out(place, "MediumInterface", fmt::format("there is no medium \"{}\"", inside));
+  }
 }
 
 std::string Reader::text(const Place& place, const char* what) {

@@ -12,6 +12,7 @@
 
 #include "jobs/import/pbrt/pbrt_camera.h"
 #include "jobs/import/pbrt/pbrt_context.h"
+#include "jobs/import/pbrt/pbrt_media.h"
 #include "jobs/import/pbrt/pbrt_shapes.h"
 #include "jobs/import/pbrt/pbrt_transforms.h"
 
@@ -39,12 +40,14 @@ class Reader {
     Place place;
     std::shared_ptr<const MaterialEntry> material;
     std::optional<ImportedValue> alpha;
+    std::shared_ptr<const Medium> inside;
   };
   struct State {
     CurrentTransform ctm;
     bool reversed = false;
     std::shared_ptr<const MaterialEntry> material;
     std::shared_ptr<const Statement> area_light;
+    std::shared_ptr<const Medium> inside;
     ColourSpace colours = ColourSpace::srgb;
     std::map<std::string, std::shared_ptr<const Parameters>> defaults;  // of pbrt-v4's Attribute
   };
@@ -69,6 +72,7 @@ class Reader {
   void close_imports();
   void begin_world(const Place& place);
   void attribute(const Place& place);
+  void named_medium(const Place& place);
   void medium_interface(const Place& place);
 
   Statement typed_statement(std::string_view name, const Place& place);
@@ -106,10 +110,14 @@ class Reader {
   std::map<std::string, std::vector<Shape>> objects_;
   std::optional<std::string> open_object_;
   bool in_world_ = false, ended_ = false;
+  std::map<std::string, std::shared_ptr<const Medium>> media_;
   // Materials with the opacity of shapes: by material, texture and value.
   std::map<std::tuple<const ImportedMaterial*, const ImportedTexture*, float>,
            std::shared_ptr<const ImportedMaterial>>
       cut_out_;
+  std::map<std::pair<const ImportedMaterial*, const Medium*>,
+           std::shared_ptr<const ImportedMaterial>>
+      filled_;
 };
 
 }  // namespace lacuna::pbrt

@@ -104,6 +104,7 @@ void Reader::shape(const Place& place) {
   out.shape.to_world = geometry->to_object * state_.ctm.start();
   out.shape.flipped = geometry->flipped;
   out.material = state_.material;
+  out.inside = state_.inside;
   if (state_.area_light != nullptr) {
     emit(out, s.parameters,
          s.type == "trianglemesh" || s.type == "plymesh" || s.type == "loopsubdiv");
@@ -164,7 +165,15 @@ void Reader::instance(const Place& place) {
 }
 
 std::shared_ptr<const ImportedMaterial> Reader::material_of(const Shape& shape) {
-  const auto& material = shape.material->material;
+  std::shared_ptr<const ImportedMaterial> material = shape.material->material;
+  if (shape.inside != nullptr) {
+    auto& filled = filled_[{material.get(), shape.inside.get()}];
+    if (filled == nullptr) {
+      filled = std::make_shared<const ImportedMaterial>(
+          filled_with(context_, *material, *shape.inside, shape.place));
+    }
+    material = filled;
+  }
   if (!shape.alpha) return material;
   const ImportedValue& alpha = *shape.alpha;
   auto& cut = cut_out_[{material.get(), alpha.texture.get(), alpha.value.x}];
@@ -184,7 +193,10 @@ ImportedScene Reader::finish() {
   scene_.cameras = {view.camera};
   scene_.picture = view.picture;
   for (Shape& s : shapes_) {
-    if (s.material->invisible && !s.shape.radiance) continue;
+    if (s.material->invisible && !s.shape.radiance) {
+      if (s.inside != nullptr) filled_with(context_, ImportedMaterial(), *s.inside, s.place);
+      continue;
+    }
     if (s.shape.radiance) s.shape.radiance->value *= view.exposure;
     s.shape.material = material_of(s);
     if (s.shape.material->normal_map && has_mirrored_uvs(*s.shape.mesh, s.shape.flipped)) {

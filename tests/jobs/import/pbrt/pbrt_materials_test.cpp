@@ -310,5 +310,38 @@ TEST(PbrtMaterials, LobesOfAMixtureHaveItsName) {
   EXPECT_NE(m->parts[1].material->place.find("scene.pbrt:"), std::string::npos);
 }
 
+TEST(PbrtMaterials, DielectricsAbsorbAsTheirMedium) {
+  const PbrtFolder folder;
+  const auto with = [&](const std::string& medium, const std::string& rest) {
+    return folder.import(v4_film + "WorldBegin MakeNamedMedium \"m\" \"string type\" " + medium +
+                         " AttributeBegin " + rest + " AttributeEnd Material \"dielectric\" " +
+                         triangle);
+  };
+  const std::string wine =
+      "\"homogeneous\" \"rgb sigma_a\" [0 1 2] \"rgb sigma_s\" [0 0 0] \"float scale\" 3";
+  const std::string glass =
+      "MediumInterface \"m\" \"\" Material \"dielectric\" " + triangle + triangle;
+  const auto scene = with(wine, glass);
+  ASSERT_EQ(scene.shapes.size(), 3);
+  EXPECT_EQ(scene.shapes[0].material->absorption, Rgb(0, 3, 6));
+  EXPECT_EQ(scene.shapes[0].material, scene.shapes[1].material);
+  EXPECT_EQ(scene.shapes[2].material->absorption, Rgb(0, 0, 0)) << "the attribute has ended";
+  EXPECT_EQ(noted(scene), "");
+  EXPECT_NE(noted(with("\"homogeneous\"", glass)).find("not what it scatters"), std::string::npos);
+  EXPECT_NE(noted(with("\"nanovdb\" \"string filename\" \"a\"", glass)).find("homogeneous ones"),
+            std::string::npos);
+  for (const char* other : {"interface", "diffuse"}) {
+    EXPECT_NE(noted(with(wine, "MediumInterface \"m\" \"\" Material \"" + std::string(other) +
+                                   "\" " + triangle))
+                  .find("medium \"m\": a medium within what is no dielectric"),
+              std::string::npos)
+        << other;
+  }
+  EXPECT_NE(noted(with(wine, "MediumInterface \"x\" \"\"")).find("no medium \"x\""),
+            std::string::npos);
+  EXPECT_NE(noted(with(wine, "MediumInterface \"\" \"m\"")).find("medium outside"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace lacuna
