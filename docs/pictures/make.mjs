@@ -1,4 +1,4 @@
-// Makes the pictures of README.md and of docs/ anew: `./dev pictures`, about four minutes on two cores.
+// Makes the pictures of docs/ and of the page anew: `./dev pictures`, about four minutes on two cores.
 // It starts the service, renders the jobs below, and takes pictures of the page, and of pages that it
 // composes itself, in headless Chromium. It prints the errors that stand below the pictures. With --again it
 // takes the pictures of the jobs that it rendered last.
@@ -25,7 +25,7 @@ const methods = [
   ["many_lights, probabilistic", { type: "many_lights", max_depth, light_paths: 1000,
     visibility: { type: "probabilistic" } }],
 ];
-const first = ["path", "bdpt, paired", "bdpt, skeleton"];  // in README.md
+const compared = ["path", "bdpt, paired", "bdpt, skeleton"];
 const views = [
   ["filtered_mapping", "node of the filtered skeleton"],
   ["region_labels", "region of the opening forest"],
@@ -140,11 +140,7 @@ try {
   }
   const page = await newPage(browser, { viewport: { width: 1280, height: 880 }, colorScheme: "light" });
 
-  const chosen = first.map((name) => done.find((job) => job.name === name));
-  await show(page, service.url);
-  await compose(page, chosen.map((job) => ({ id: job.id, layer: "", lines: lines(job) })), 3, false);
-  await save(page, "#figures", "ajar.jpg", 88);
-
+  const chosen = compared.map((name) => done.find((job) => job.name === name));
   const crop = [150, 62, 96, 72, 3];
   await show(page, service.url);
   await compose(page, [...done.map((job) => ({ id: job.id, layer: "", crop, lines: lines(job) })),

@@ -199,8 +199,16 @@ const CellAnswer* FigureSource::cell(std::size_t row, std::size_t method,
 
 std::optional<std::vector<double>> FigureSource::picture(std::size_t row,
                                                          std::size_t method) const {
-  const CellAnswer* c = cell(row, method);
-  return c == nullptr ? std::nullopt : std::optional(read_picture(sweep(), c->done.front()));
+  const auto index = rows_[row].cells[method];
+  if (!index) return {};
+  // Another program's picture may have no time on the clock, and be in no curve.
+  const auto is_there = [this](std::size_t run) {
+    const RunResult& r = answers().results[run];
+    return r.state.state == State::done && r.seconds && !answers().stale.contains(run);
+  };
+  const auto& runs = answers().cells[*index].runs;
+  const auto found = std::ranges::find_if(runs, is_there);
+  return found == runs.end() ? std::nullopt : std::optional(read_picture(sweep(), *found));
 }
 
 std::optional<Reference> FigureSource::reference(std::size_t row) const {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/json/json_text.h"
 #include "jobs/figure/figure_source.h"
 #include "jobs/report/crop_selection.h"
 
@@ -63,6 +65,7 @@ class Suggestion {
       throw BadJob({{"", fmt::format("{}: no run is done", sweep_.dir().string())}});
     }
     tell_apart(spec_.scenes);
+    name_methods();
     FigureSpec found = spec_;
     found.sweep = sweep_.dir().string();
     const FigureSource source(found, "");
@@ -105,13 +108,41 @@ class Suggestion {
     const bool known = std::any_of(spec_.methods.begin(), spec_.methods.end(),
                                    [&](const auto& m) { return m.settings == method.settings; });
     if (known || spec_.methods.size() == most_methods) return;
-    method.name = cell_text(method.settings);
-    if (method.name.empty()) method.name = "the job";
-    // The value alone where one setting tells the methods apart, and is no number.
-    const char first = method.settings.size() == 1 ? method.settings.begin()->second.text[0] : ' ';
-    if (first == '"' || first == '{') method.name.erase(0, method.name.find(' ') + 1);
-    method.name = shortened(method.name);
     spec_.methods.push_back(std::move(method));
+  }
+
+  /// The settings of a method, of objects only the keys whose values differ among the methods.
+  JsonTable<JsonValue> own_settings(const FigureMethod& method) const {
+    JsonTable<JsonValue> own = method.settings;
+    for (auto& [pointer, value] : own) {
+      OrderedJson object = parse_own(value.text);
+      if (!object.is_object()) continue;
+      const auto is_common = [&](const std::string& key) {
+        return key != "type" && std::ranges::all_of(spec_.methods, [&](const FigureMethod& m) {
+                 const OrderedJson other = parse_own(m.settings.at(pointer).text);
+                 return other.is_object() && other.value(key, OrderedJson()) == object.at(key);
+               });
+      };
+      std::vector<std::string> common;
+      for (const auto& item : object.items()) {
+        if (is_common(item.key())) common.push_back(item.key());
+      }
+      for (const std::string& key : common) object.erase(key);
+      value.text = object.dump();
+    }
+    return own;
+  }
+
+  void name_methods() {
+    for (FigureMethod& method : spec_.methods) {
+      method.name = cell_text(own_settings(method));
+      if (method.name.empty()) method.name = "the job";
+      // The value alone where one setting tells the methods apart, and is no number.
+      const char first =
+          method.settings.size() == 1 ? method.settings.begin()->second.text[0] : ' ';
+      if (first == '"' || first == '{') method.name.erase(0, method.name.find(' ') + 1);
+      method.name = shortened(method.name);
+    }
   }
 
   /// False: the scene has no reference.

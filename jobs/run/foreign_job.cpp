@@ -102,7 +102,7 @@ class ForeignRun {
       const bool every = p.file.find("{seed}") != std::string::npos;
       if (p.seed ? *p.seed != spec_.seed : !every && spec_.seed != 1) continue;
       const std::string name = fill_in(p.file, common());
-      const fs::path file = reference_file(name, context_.data, context_.scenes);
+      const fs::path file = reference_file(name, context_.data, context_.scenes, "picture");
       found.push_back({file.string(), p.seconds,
                        p.cpu_seconds.value_or(std::numeric_limits<double>::quiet_NaN()), name});
     }

@@ -49,12 +49,12 @@ Reference read_reference(const std::string& name, const std::filesystem::path& i
 }
 
 std::filesystem::path reference_file(const std::string& name, const DataRoot& data,
-                                     const ScenesRoots& scenes) {
+                                     const ScenesRoots& scenes, std::string_view what) {
   if (is_image_file(name)) {
     try {
       return scenes.resolve(name, reference_extensions);
     } catch (const std::invalid_argument& e) {
-      throw SceneError(fmt::format("reference \"{}\": {}", name, e.what()));
+      throw SceneError(fmt::format("{} \"{}\": {}", what, name, e.what()));
     }
   }
   std::error_code error;
@@ -66,14 +66,14 @@ std::filesystem::path reference_file(const std::string& name, const DataRoot& da
   if (is_job_id(name)) {
     const JobFolder folder(data.jobs() / name);
     if (is_there(folder.dir())) return folder.file("image.exr");
-    throw SceneError(fmt::format("reference \"{}\": no such job", name));
+    throw SceneError(fmt::format("{} \"{}\": no such job", what, name));
   }
   const auto file = data.references() / name / "image.exr";
   if (is_plain_name(name) && is_there(file)) return file;
   throw SceneError(fmt::format(
-      "reference \"{}\": neither \"auto\", nor an .exr, .hdr, .pfm or .tif below a scenes root, "
+      "{} \"{}\": neither \"auto\", nor an .exr, .hdr, .pfm or .tif below a scenes root, "
       "nor a job's id, nor a folder in {}",
-      name, data.references().string()));
+      what, name, data.references().string()));
 }
 
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes) {

@@ -21,9 +21,10 @@ struct Reference {
 
 /// The picture that a job names as its reference (not "auto" or empty): an EXR, Radiance HDR, PFM
 /// or TIFF of floats below a scenes root, a job's id, or the name of a folder below the references.
-/// Throws SceneError if it is missing; InputUnreadable.
+/// Throws SceneError if it is missing, which calls it `what`; InputUnreadable.
 std::filesystem::path reference_file(const std::string& name, const DataRoot& data,
-                                     const ScenesRoots& scenes);
+                                     const ScenesRoots& scenes,
+                                     std::string_view what = "reference");
 
 /// Reads reference_file() of `spec.reference`. Throws SceneError if it is missing, unfinished, or
 /// of another size; InputUnreadable.

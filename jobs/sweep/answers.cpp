@@ -242,6 +242,7 @@ class Comparison {
     if (sweep_.spec().seeds == 1) {
       w.emplace_back("one seed per cell gives no intervals; set \"seeds\" to 3 or more");
     }
+    warn_of_missing_times();
     hint_at_seeds();
     if (!answers_.tainted.empty()) {
       const bool wall = at_.clock == SweepClock::seconds;
@@ -249,6 +250,23 @@ class Comparison {
                               answers_.tainted.size(), plan_.runs.size(),
                               wall ? "; compare_at.clock \"cpu_seconds\" is less affected" : ""));
     }
+  }
+
+  void warn_of_missing_times() {
+    const auto has_none = [&](std::size_t run) {
+      const RunResult& r = answers_.results[run];
+      return r.state.state == State::done && r.seconds && !r.cpu_seconds;
+    };
+    if (at_.clock == SweepClock::seconds) return;
+    std::vector<std::string> names;
+    for (std::size_t r = 0; r < plan_.runs.size(); ++r) {
+      if (has_none(r)) names.push_back(plan_.runs[r].name);
+    }
+    if (names.empty()) return;
+    answers_.warnings.push_back(
+        fmt::format("{} of {} runs (such as {}) have no CPU seconds and are not compared: give "
+                    "their pictures \"cpu_seconds\", or set compare_at.clock to \"seconds\"",
+                    names.size(), plan_.runs.size(), names.front()));
   }
 
   /// Warns of the number of seeds that would halve the intervals, if the widest error interval

@@ -56,15 +56,23 @@ VaryingSettings settings_that_vary(const SweepPlan& plan, const std::vector<std:
 
 namespace {
 
-/// A value in a cell's text: strings without quotes, another program by its name.
-std::string value_text(const OrderedJson& v, const JsonValue& value) {
+/// A value in a cell's text: strings without quotes, an object by its type with its other keys in
+/// brackets, another program by its name.
+std::string value_text(const OrderedJson& v) {
   if (v.is_string()) return v.get<std::string>();
-  const auto text_of = [&v](const char* key) -> std::string {
-    const auto found = v.is_object() ? v.find(key) : v.end();
-    return v.is_object() && found != v.end() && found->is_string() ? found->get<std::string>() : "";
+  if (!v.is_object()) return v.dump();
+  const auto text_of = [&v](const char* key) {
+    const auto found = v.find(key);
+    return found != v.end() && found->is_string() ? found->get<std::string>() : "";
   };
-  if (text_of("type") != ForeignSettings::name || text_of("name").empty()) return value.text;
-  return text_of("name");
+  const std::string type = text_of("type");
+  if (type == ForeignSettings::name && !text_of("name").empty()) return text_of("name");
+  std::vector<std::string> others;
+  for (const auto& [key, value] : v.items()) {
+    if (key != "type" || type.empty()) others.push_back(key + " " + value_text(value));
+  }
+  if (type.empty()) return fmt::format("{}", fmt::join(others, ", "));
+  return others.empty() ? type : fmt::format("{} ({})", type, fmt::join(others, ", "));
 }
 
 }  // namespace
@@ -72,9 +80,8 @@ std::string value_text(const OrderedJson& v, const JsonValue& value) {
 std::string cell_text(const JsonTable<JsonValue>& settings) {
   std::string text;
   for (const auto& [pointer, value] : settings) {
-    const OrderedJson v = parse_own(value.text);
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", short_name(pointer, settings),
-                        value_text(v, value));
+                        value_text(parse_own(value.text)));
   }
   return text;
 }

@@ -61,8 +61,8 @@ struct VaryingSettings {
 };
 VaryingSettings settings_that_vary(const SweepPlan& plan, const std::vector<std::size_t>& cells);
 
-/// "max_depth 8, resolution [64,64]": the settings of a cell, by the last part of each pointer,
-/// extended where two have the same end.
+/// "integrator path (reuse 64), resolution [64,64]": the settings of a cell, by the last part of
+/// each pointer, extended where two have the same end.
 std::string cell_text(const JsonTable<JsonValue>& settings);
 
 }  // namespace lacuna

@@ -287,6 +287,33 @@ TEST_F(Figures, AreSuggestedWhereMethodsDiffer) {
   EXPECT_GT(draw_figure(again).height, 100);
 }
 
+// Another program's picture without CPU seconds is shown, without an error at a CPU time.
+TEST_F(Figures, ShowPicturesWithoutTheirTime) {
+  const SweepFolder sweep = SweepFolder::create(temp.path() / "b.sweep", parse_sweep(R"({"job":
+    {"scene": "door.glb", "reference": "r.exr", "resolution": [64, 48], "budget": {"iterations": 80}},
+    "axes": {"/integrator": [{"type": "path", "max_depth": 6, "reuse": 16}, {"type": "bdpt", "max_depth": 6},
+      {"type": "foreign", "name": "Cycles", "max_depth": 6, "pictures": [{"file": "o.exr", "seconds": 4}]}]},
+    "compare_at": {"clock": "cpu_seconds"}})"));
+  for (const SweepRun& run : sweep.plan().runs) finish(sweep, run, temp.path() / "r.exr");
+  write_file_atomically(
+      sweep.folder(sweep.plan().runs[2]).file("curve.csv"),
+      "iteration,seconds,cpu_seconds,mae,rmse,mse,relmse,smape,flip,est_rmse,at_floor\n"
+      ",4,,1,1,1,1,1,1,,0\n");
+  const FigureSpec spec = suggest_figure(temp.path() / "b.sweep", "b.sweep");
+  ASSERT_EQ(spec.methods.size(), 3u);
+  EXPECT_EQ(spec.methods[0].name, "path (reuse 16)");
+  EXPECT_EQ(spec.methods[1].name, "bdpt");
+  EXPECT_EQ(spec.methods[2].name, "Cycles");
+  const FigureSource figure = source(write_document(spec));
+  EXPECT_TRUE(figure.error(0, 0, 0));
+  EXPECT_FALSE(figure.error(0, 2, 0));
+  EXPECT_TRUE(figure.picture(0, 2));
+  const auto& warnings = figure.answers().warnings;
+  EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& w) {
+    return w.starts_with("1 of 3 runs (such as 0003-1) have no CPU seconds");
+  }));
+}
+
 TEST_F(Figures, WithoutWhatTheyNameAreRefused) {
   expect_problem("a.sweep", "b.sweep", "/sweep", "found \"b.sweep\"");
   expect_problem("[40, 30, 16, 12]", "[50, 30, 16, 12]", "/scenes/0/crops/1",

@@ -199,6 +199,13 @@ TEST(Sweep, TextsOfCells) {
             "max_depth 4, scene a.glb");
   EXPECT_EQ(cell_text({{"/budget/error/target", {"1"}}, {"/x/target", {"2"}}}),
             "error/target 1, x/target 2");
+  EXPECT_EQ(cell_text({{"/integrator", {R"({"type":"path"})"}}}), "integrator path");
+  EXPECT_EQ(
+      cell_text({{"/integrator", {R"({"reuse":64,"type":"path","guide":{"type":"sd_tree"}})"}},
+                 {"/resolution", {"[64,64]"}}}),
+      "integrator path (reuse 64, guide sd_tree), resolution [64,64]");
+  EXPECT_EQ(cell_text({{"/budget", {R"({"seconds":3,"iterations":5})"}}}),
+            "budget seconds 3, iterations 5");
 }
 
 TEST(SweepProblems, WhereItIsCompared) {
