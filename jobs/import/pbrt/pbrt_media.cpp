@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "jobs/import/pbrt/pbrt_colours.h"
 
 namespace lacuna::pbrt {
@@ -18,9 +20,12 @@ Medium read_medium(Context& context, const std::string& name, const Parameters& 
   }
   const auto coefficient = [&](const char* key, const Rgb& otherwise) {
     const Parameter* c = p.find_spectrum(key);
-    return c == nullptr ? otherwise : reflected_colour(context, *c);
+    Rgb value = c == nullptr ? otherwise : reflected_colour(context, *c);
+    // A colour of another space may lie outside of ours.
+    for (int i = 0; i < 3; ++i) value[i] = std::max(0.0F, value[i]);
+    return value;
   };
-  const auto scale = static_cast<float>(p.number("scale", 1));
+  const auto scale = static_cast<float>(p.number_in("scale", 1, 0, 1e9));
   out.absorption = coefficient("sigma_a", {.0011F, .0024F, .014F}) * scale;
   out.scatters = coefficient("sigma_s", {2.55F, 3.21F, 3.77F}) * scale != Rgb(0, 0, 0);
   p.ignore({"g"});

@@ -327,6 +327,8 @@ TEST(PbrtMaterials, DielectricsAbsorbAsTheirMedium) {
   EXPECT_EQ(scene.shapes[0].material, scene.shapes[1].material);
   EXPECT_EQ(scene.shapes[2].material->absorption, Rgb(0, 0, 0)) << "the attribute has ended";
   EXPECT_EQ(noted(scene), "");
+  EXPECT_EQ(with("\"homogeneous\" \"rgb sigma_a\" [1 -1 0]", glass).shapes[0].material->absorption,
+            Rgb(1, 0, 0));
   EXPECT_NE(noted(with("\"homogeneous\"", glass)).find("not what it scatters"), std::string::npos);
   EXPECT_NE(noted(with("\"nanovdb\" \"string filename\" \"a\"", glass)).find("homogeneous ones"),
             std::string::npos);
