@@ -74,8 +74,9 @@ SceneCounts check_scene(const std::filesystem::path& file, const SceneChoice& ch
     counts.views.push_back(view_of(camera, data.origin));
   }
   const Scene scene(std::move(data), {.materials = true, .emission = true}, std::nullopt, pool);
-  for (const auto& looks : {close_surfaces, hidden_emitters, lights_in_surfaces, nested_solids}) {
-    for (std::string& w : looks(scene)) counts.warnings.push_back(std::move(w));
+  for (const std::vector<std::string>& found : {close_surfaces(scene, pool), hidden_emitters(scene),
+                                                lights_in_surfaces(scene), nested_solids(scene)}) {
+    counts.warnings.insert(counts.warnings.end(), found.begin(), found.end());
   }
   return counts;
 }

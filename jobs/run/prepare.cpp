@@ -96,8 +96,8 @@ void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context
 
 /// Warnings before rendering.
 std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
-                                     const JobIntegrator& integrator) {
-  std::vector<std::string> all = close_surfaces(scene);
+                                     const JobIntegrator& integrator, const ThreadPool& pool) {
+  std::vector<std::string> all = close_surfaces(scene, pool);
   if (!scene.has_emitters()) return all;
   const auto add = [&all](std::vector<std::string> warnings) {
     for (std::string& w : warnings) all.push_back(std::move(w));
@@ -179,7 +179,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};
   p.camera = std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1],
                                       spec.pixel_filter, crop);
-  for (std::string& w : warnings_of(*p.scene, *p.camera, spec.integrator)) {
+  for (std::string& w : warnings_of(*p.scene, *p.camera, spec.integrator, *p.pool)) {
     p.warnings.push_back(std::move(w));
   }
   if (contact) {

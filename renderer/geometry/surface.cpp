@@ -1,6 +1,7 @@
 #include "renderer/geometry/surface.h"
 
 #include "renderer/geometry/tangent_frame.h"
+#include "renderer/geometry/triangle_parts.h"
 
 namespace lacuna {
 
@@ -90,10 +91,30 @@ V3f bumped_normal(const SceneData& scene, const Surface& s, const V2f& at) {
   return towards_front(V3f(n - (gradient - n * n.dot(gradient))), s);
 }
 
+/// A triangle, and the same where its instance places it.
+struct PlacedRecord {
+  TriangleRecord record;
+  TriangleShape placed;
+
+  PlacedRecord(const SceneData& scene, const TriangleTable& table, const Hit& hit)
+      : record(table.record(hit.mesh, hit.triangle)),
+        placed(hit.instance == no_instance ? TriangleShape(record)
+                                           : TriangleShape(record, scene.instances[hit.instance])) {
+  }
+};
+
 /// The surface with its interpolated normal.
-Surface unbent(const SceneData& scene, const TriangleTable& table, const Hit& hit, const V3f& x) {
-  Surface s(scene, table, hit, x);
-  if (hit.instance != no_instance) place(s, scene, hit, placed_triangle(scene, table, hit));
+Surface unbent(const SceneData& scene, const TriangleTable& table, const PlacedRecord& of,
+               const Hit& hit, const V3f& x) {
+  Surface s(scene, of.record, hit, x, [&] { return table.attributes(hit.mesh, hit.triangle); });
+  if (hit.instance != no_instance) place(s, scene, hit, of.placed);
+  return s;
+}
+
+Surface bent(const SceneData& scene, Surface s, const Hit& hit) {
+  const Material& m = scene.materials[s.material];
+  s.ns = bent_normal(scene, s, {hit.u, hit.v}, m.normal_texture, m.normal_scale);
+  s.ns = bumped_normal(scene, s, {hit.u, hit.v});
   return s;
 }
 
@@ -104,60 +125,71 @@ V3f coat_normal(const SceneData& scene, const TriangleTable& table, const Surfac
   const Hit hit{
       .mesh = s.mesh, .triangle = s.triangle, .u = at.x, .v = at.y, .instance = s.instance};
   const ClearCoat& coat = scene.materials[s.material].extensions.coat;
-  return bent_normal(scene, unbent(scene, table, hit, s.x), at, coat.normal_texture,
+  const PlacedRecord of(scene, table, hit);
+  return bent_normal(scene, unbent(scene, table, of, hit, s.x), at, coat.normal_texture,
                      coat.normal_scale);
 }
 
 Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, const Ray& ray,
                         const Hit& hit) {
-  return of_any(scene, table, hit, placed_triangle(scene, table, hit).at(ray, hit.u, hit.v));
+  const PlacedRecord of(scene, table, hit);
+  return bent(scene, unbent(scene, table, of, hit, of.placed.at(ray, hit.u, hit.v)), hit);
 }
 
 Surface Surface::of_any(const SceneData& scene, const TriangleTable& table, const Hit& hit,
                         const V3f& x) {
-  Surface s = unbent(scene, table, hit, x);
-  const Material& m = scene.materials[s.material];
-  s.ns = bent_normal(scene, s, {hit.u, hit.v}, m.normal_texture, m.normal_scale);
-  s.ns = bumped_normal(scene, s, {hit.u, hit.v});
-  return s;
+  return bent(scene, unbent(scene, table, {scene, table, hit}, hit, x), hit);
 }
 
 TriangleShape placed_triangle(const SceneData& scene, const TriangleTable& table, const Hit& hit) {
-  const TriangleRecord& r = table.at(hit.mesh, hit.triangle);
-  if (hit.instance == no_instance) return r;
-  return {r, scene.instances[hit.instance]};
+  return PlacedRecord(scene, table, hit).placed;
 }
 
-TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
-                               std::uint32_t triangle)
-    : TriangleShape(scene.meshes[mesh_index], triangle) {
-  const Mesh& mesh = scene.meshes[mesh_index];
-  const Material& m = scene.materials[mesh.material];
-  smooth = !mesh.normals.empty();
-  textured = uses_textures(m) && !(mesh.uvs[0].empty() && mesh.uvs[1].empty());
-  two_uv_sets = !mesh.uvs[1].empty();
-  emits = m.emits();
-  emits_behind = m.emits_behind();
-  material = mesh.material;
-}
+MeshTraits::MeshTraits(const Mesh& mesh, const Material& m)
+    : smooth(!mesh.normals.empty()),
+      textured(uses_textures(m) && !(mesh.uvs[0].empty() && mesh.uvs[1].empty())),
+      two_uv_sets(!mesh.uvs[1].empty()),
+      emits(m.emits()),
+      emits_behind(m.emits_behind()),
+      material(mesh.material) {}
 
-TriangleTable::TriangleTable(const SceneData& scene) {
-  records_.reserve(scene.stored_triangles());
-  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    const Mesh& mesh = scene.meshes[m];
-    First& first = first_.emplace_back(First{records_.size(), none});
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const TriangleRecord& r = records_.emplace_back(scene, m, t);
-      if (!r.smooth && !r.textured) continue;
-      if (t == 0) first.attributes = attributes_.size();
-      TriangleAttributes& a = attributes_.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto i = mesh.triangles[t][k];
-        a.uv0[k] = mesh.uvs[0].empty() ? V2f(0, 0) : mesh.uvs[0][i];
-        a.normals[k] = mesh.normals.empty() ? V3f(0, 0, 0) : mesh.normals[i];
-      }
-    }
+TriangleAttributes::TriangleAttributes(const Mesh& mesh, std::uint32_t triangle) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = mesh.triangles[triangle][k];
+    uv0[k] = mesh.uvs[0].empty() ? V2f(0, 0) : mesh.uvs[0][i];
+    normals[k] = mesh.normals.empty() ? V3f(0, 0, 0) : mesh.normals[i];
   }
+}
+
+// A million triangles with normals and texture coordinates. With more, hits cost the same with and
+// without a table (docs/notebook/scenes.md).
+const std::size_t TriangleTable::default_bytes = std::size_t{1} << 27;
+
+TriangleTable::TriangleTable(const SceneData& scene, const ThreadPool& pool, std::size_t most_bytes)
+    : scene_(&scene) {
+  std::size_t records = 0, attributes = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    const MeshTraits traits(mesh, scene.materials[mesh.material]);
+    const bool more = traits.smooth || traits.textured;
+    first_.push_back({records, more ? attributes : none, traits});
+    records += mesh.triangles.size();
+    if (more) attributes += mesh.triangles.size();
+  }
+  const std::size_t record_bytes = records * sizeof(TriangleRecord);
+  records_stored_ = record_bytes <= most_bytes;
+  attributes_stored_ = record_bytes + attributes * sizeof(TriangleAttributes) <= most_bytes;
+  if (records_stored_) records_.resize(records);
+  if (attributes_stored_) attributes_.resize(attributes);
+  const std::vector<TrianglePart> parts = triangle_parts(scene.meshes);
+  pool.for_each(static_cast<int>(parts.size()), [&](int i) {
+    const auto [m, begin, end] = parts[static_cast<std::size_t>(i)];
+    const First& first = first_[m];
+    const bool more = attributes_stored_ && first.attributes != none;
+    for (std::uint32_t t = begin; t < end; ++t) {
+      if (records_stored_) records_.set(first.record + t, {scene.meshes[m], first.traits, t});
+      if (more) attributes_.set(first.attributes + t, {scene.meshes[m], t});
+    }
+  });
 }
 
 }  // namespace lacuna

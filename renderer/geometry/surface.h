@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// The data of a triangle that every hit reads: one cache line.
-struct alignas(64) TriangleRecord : TriangleShape {
+/// What the triangles of a mesh share.
+struct MeshTraits {
   bool smooth = false;    ///< has interpolated normals
   bool textured = false;  ///< has texture coordinates that its material uses
   bool two_uv_sets = false;
@@ -19,7 +19,15 @@ struct alignas(64) TriangleRecord : TriangleShape {
   bool emits_behind : 1 = false;
   std::uint32_t material = 0;
 
-  TriangleRecord(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle);
+  MeshTraits() = default;
+  MeshTraits(const Mesh& mesh, const Material& material);
+};
+
+/// The data of a triangle that every hit reads: one cache line.
+struct alignas(64) TriangleRecord : TriangleShape, MeshTraits {
+  TriangleRecord() = default;
+  TriangleRecord(const Mesh& mesh, const MeshTraits& traits, std::uint32_t triangle)
+      : TriangleShape(mesh, triangle), MeshTraits(traits) {}
 };
 static_assert(sizeof(TriangleRecord) == 64);
 
@@ -27,30 +35,50 @@ static_assert(sizeof(TriangleRecord) == 64);
 struct alignas(64) TriangleAttributes {
   std::array<V2f, 3> uv0;  ///< TEXCOORD_0 of the corners
   std::array<V3f, 3> normals;
+
+  TriangleAttributes(const Mesh& mesh, std::uint32_t triangle);
 };
 
-/// The records of all triangles of a scene, and the attributes of smooth or textured ones.
+/// The records of all triangles of a scene, and the attributes of smooth or textured ones. They are
+/// stored in so many bytes at most; what has no room, first the attributes, is computed at each hit
+/// from the meshes, to the same bits.
 class TriangleTable {
  public:
-  explicit TriangleTable(const SceneData& scene);
+  static const std::size_t default_bytes;
+
+  /// Keeps a pointer to `scene`.
+  TriangleTable(const SceneData& scene, const ThreadPool& pool,
+                std::size_t most_bytes = default_bytes);
+  /// Whether all records and attributes are.
+  bool stored() const { return records_stored_ && attributes_stored_; }
+  /// Requires stored().
   const TriangleRecord& at(std::uint32_t mesh, std::uint32_t triangle) const {
     return records_[first_[mesh].record + triangle];
   }
-  /// Requires a smooth or textured triangle.
-  const TriangleAttributes& attributes(std::uint32_t mesh, std::uint32_t triangle) const {
+  /// Requires stored() and a smooth or textured triangle.
+  const TriangleAttributes& attributes_at(std::uint32_t mesh, std::uint32_t triangle) const {
     return attributes_[first_[mesh].attributes + triangle];
   }
-  /// Prefetches what at() and attributes() read.
+  TriangleRecord record(std::uint32_t mesh, std::uint32_t triangle) const {
+    if (records_stored_) return at(mesh, triangle);
+    return {scene_->meshes[mesh], first_[mesh].traits, triangle};
+  }
+  /// Requires a smooth or textured triangle.
+  TriangleAttributes attributes(std::uint32_t mesh, std::uint32_t triangle) const {
+    if (attributes_stored_) return attributes_at(mesh, triangle);
+    return {scene_->meshes[mesh], triangle};
+  }
+  /// Prefetches what is read first.
   void prefetch(std::uint32_t mesh, std::uint32_t triangle) const {
     const First& first = first_[mesh];
-    _mm_prefetch(reinterpret_cast<const char*>(&records_[first.record + triangle]), _MM_HINT_T0);
-    if (first.attributes == none) return;
-    _mm_prefetch(reinterpret_cast<const char*>(&attributes_[first.attributes + triangle]),
-                 _MM_HINT_T0);
-  }
-  std::uint64_t bytes() const {
-    return records_.size() * sizeof(TriangleRecord) +
-           attributes_.size() * sizeof(TriangleAttributes);
+    const auto ahead = [](const auto& data) {
+      _mm_prefetch(reinterpret_cast<const char*>(&data), _MM_HINT_T0);
+    };
+    if (!stored()) ahead(scene_->meshes[mesh].triangles[triangle]);
+    if (records_stored_) ahead(records_[first.record + triangle]);
+    if (attributes_stored_ && first.attributes != none) {
+      ahead(attributes_[first.attributes + triangle]);
+    }
   }
 
  private:
@@ -58,10 +86,13 @@ class TriangleTable {
   struct First {
     std::size_t record;
     std::size_t attributes;  // or none
+    MeshTraits traits;
   };
+  const SceneData* scene_;
   std::vector<First> first_;  // of each mesh
-  HugeVector<TriangleRecord> records_;
-  HugeVector<TriangleAttributes> attributes_;
+  bool records_stored_, attributes_stored_;
+  HugeArray<TriangleRecord> records_;
+  HugeArray<TriangleAttributes> attributes_;
 };
 
 /// The triangle of a hit, in scene coordinates.
@@ -92,14 +123,22 @@ struct Surface {
                         const Hit& hit);
   static Surface of_any(const SceneData& scene, const TriangleTable& table, const Hit& hit,
                         const V3f& x);
-  // Inline: every hit constructs a Surface in place. For instances and normal maps use of_any().
+  // Inline: every hit constructs a Surface in place. For instances, normal maps and a table that is
+  // not stored use of_any().
   /// The hit of `ray`.
   Surface(const SceneData& scene, const TriangleTable& table, const Ray& ray, const Hit& hit)
       : Surface(scene, table, hit, table.at(hit.mesh, hit.triangle).at(ray, hit.u, hit.v)) {}
   /// The hit at point `at`, computed before.
   Surface(const SceneData& scene, const TriangleTable& table, const Hit& hit, const V3f& at)
+      : Surface(scene, table.at(hit.mesh, hit.triangle), hit, at,
+                [&]() -> const TriangleAttributes& {
+                  return table.attributes_at(hit.mesh, hit.triangle);
+                }) {}
+  /// The same on a triangle; `attributes_of` gives its attributes.
+  template <class AttributesOf>
+  Surface(const SceneData& scene, const TriangleRecord& r, const Hit& hit, const V3f& at,
+          AttributesOf&& attributes_of)
       : x(at), mesh(hit.mesh), triangle(hit.triangle) {
-    const TriangleRecord& r = table.at(hit.mesh, hit.triangle);
     ng = r.ng;
     ns = r.ng;
     offset = ray_offset(x, ng, r.plane_error);
@@ -107,7 +146,7 @@ struct Surface {
     emits = r.emits;
     emits_behind = r.emits_behind;
     if (!r.textured && !r.smooth) return;
-    const TriangleAttributes& a = table.attributes(hit.mesh, hit.triangle);
+    const TriangleAttributes& a = attributes_of();
     const float w = 1 - hit.u - hit.v;
     if (r.textured) {
       uv[0] = w * a.uv0[0] + hit.u * a.uv0[1] + hit.v * a.uv0[2];

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "renderer/geometry/triangle_parts.h"
+
 namespace lacuna {
 namespace {
 
@@ -13,15 +17,17 @@ struct Neighbour {
 };
 
 /// An upper bound of the offset of rays: surfaces further away than this are not tested.
-float largest_offset(const Scene& scene) {
-  float largest = 0;
-  const SceneData& data = scene.data();
-  for (std::uint32_t m = 0; m < data.placed_meshes().size(); ++m) {
-    for (std::uint32_t t = 0; t < data.meshes[m].triangles.size(); ++t) {
-      largest = std::max(largest, scene.triangle(m, t).plane_error);
+float largest_offset(const Scene& scene, const ThreadPool& pool) {
+  const std::vector<TrianglePart> parts = triangle_parts(scene.data().placed_meshes());
+  std::vector<float> largest(parts.size());
+  pool.for_each(static_cast<int>(parts.size()), [&](int i) {
+    const auto [mesh, first, last] = parts[static_cast<std::size_t>(i)];
+    float& own = largest[static_cast<std::size_t>(i)];
+    for (std::uint32_t t = first; t < last; ++t) {
+      own = std::max(own, scene.triangle(mesh, t).plane_error);
     }
-  }
-  return largest;
+  });
+  return largest.empty() ? 0 : *std::ranges::max_element(largest);
 }
 
 std::optional<Neighbour> neighbour(const Scene& scene, const TriangleShape& own, std::uint32_t mesh,
@@ -45,17 +51,18 @@ std::optional<Neighbour> neighbour(const Scene& scene, const TriangleShape& own,
 
 }  // namespace
 
-std::vector<std::string> close_surfaces(const Scene& scene) {
+std::vector<std::string> close_surfaces(const Scene& scene, const ThreadPool& pool) {
   constexpr std::size_t of_a_mesh = 64;
   const SceneData& data = scene.data();
-  const float coarsest = largest_offset(scene);
+  if (data.meshes.size() < 2) return {};
+  const float coarsest = largest_offset(scene, pool);
   std::size_t looked_at = 0, close = 0;
   std::string first;
   for (std::uint32_t m = 0; m < data.placed_meshes().size(); ++m) {
     const std::size_t count = data.meshes[m].triangles.size();
     const std::size_t step = (count + of_a_mesh - 1) / of_a_mesh;
     for (std::size_t t = 0; t < count; t += std::max<std::size_t>(step, 1)) {
-      const TriangleShape& own = scene.triangle(m, static_cast<std::uint32_t>(t));
+      const TriangleShape own = scene.triangle(m, static_cast<std::uint32_t>(t));
       ++looked_at;
       std::optional<Neighbour> by = neighbour(scene, own, m, 1, coarsest);
       if (!by) by = neighbour(scene, own, m, -1, coarsest);

@@ -45,14 +45,14 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
              const std::optional<EnvironmentImage>& environment, const ThreadPool& pool)
     : data_(std::make_unique<SceneData>(std::move(data))),
       bounds_(data_->bounds()),
-      triangles_(*data_),
-      rays_((decode_textures(needs, !environment, pool), RayCaster(*data_, pool))) {
+      rays_((decode_textures(needs, !environment, pool), RayCaster(*data_, pool))),
+      triangles_(*data_, pool) {
   has_media_ = std::ranges::any_of(data_->materials,
                                    [](const Material& m) { return m.medium() != nullptr; });
-  plain_ =
-      data_->instances.empty() && std::ranges::none_of(data_->materials, [](const Material& m) {
-        return m.normal_texture.used() || (m.lacuna && m.lacuna->bump.used());
-      });
+  plain_ = triangles_.stored() && data_->instances.empty() &&
+           std::ranges::none_of(data_->materials, [](const Material& m) {
+             return m.normal_texture.used() || (m.lacuna && m.lacuna->bump.used());
+           });
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     find_contacts(pool);

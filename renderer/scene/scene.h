@@ -51,8 +51,8 @@ class Scene {
     return {*data_, triangles_, hit, x};
   }
   /// The geometry of a triangle of a placed mesh.
-  const TriangleShape& triangle(std::uint32_t mesh, std::uint32_t triangle) const {
-    return triangles_.at(mesh, triangle);
+  TriangleShape triangle(std::uint32_t mesh, std::uint32_t triangle) const {
+    return triangles_.record(mesh, triangle);
   }
   /// The geometry of the triangle of a hit.
   TriangleShape triangle(const Hit& hit) const { return placed_triangle(*data_, triangles_, hit); }
@@ -122,13 +122,13 @@ class Scene {
   std::unique_ptr<SceneData> data_;  // on the heap: rays and emitters point into it
   Bounds bounds_;
   int textures_decoded_ = 0;
-  bool plain_ = true;  // neither instances nor normal maps
+  bool plain_ = true;  // neither instances nor normal maps, and the table of triangles is stored
   bool has_media_ = false;
-  TriangleTable triangles_;
   std::vector<std::optional<Lobes>>
       uniform_lobes_;  // of each material; none if its scattering varies over its surfaces
   std::vector<std::uint8_t> lambertian_;  // of each material: whether it is_lambertian()
   RayCaster rays_;
+  TriangleTable triangles_;  // behind rays_, whose building takes memory for a while
   std::unique_ptr<EmitterSet> emitters_;
 };
 

@@ -221,7 +221,8 @@ SceneData sheet_over_floor(float size, float gap, bool tilted, float height) {
 
 TEST(CloseSurfaces, AreWarnedOfWhereRaysDoNotResolveThem) {
   const auto warned = [](float size, float gap, bool tilted, float height) {
-    return close_surfaces(test::lit_scene(sheet_over_floor(size, gap, tilted, height)));
+    return close_surfaces(test::lit_scene(sheet_over_floor(size, gap, tilted, height)),
+                          ThreadPool(1));
   };
   for (const float size : {2.0F, 1e4F, 1e6F}) {
     for (const float gap : {1e-6F, 1e-3F, 1.0F}) {
