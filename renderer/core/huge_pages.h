@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -34,6 +35,17 @@ struct HugePageAllocator {
   }
   bool operator==(const HugePageAllocator&) const = default;
 };
+
+/// Reserves room for `n` elements of an empty vector, in 2 MiB pages where it spans whole ones.
+template <class T>
+void reserve_huge(std::vector<T>& empty, std::size_t n) {
+  constexpr std::uintptr_t page = std::uintptr_t{2} << 20;
+  empty.reserve(n);
+  const auto begin = reinterpret_cast<std::uintptr_t>(empty.data());
+  const std::uintptr_t first = (begin + page - 1) / page * page;
+  const std::uintptr_t last = (begin + n * sizeof(T)) / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);  // a hint
+}
 
 template <class T>
 using HugeVector = std::vector<T, HugePageAllocator<T>>;

@@ -59,6 +59,10 @@ class AccessorView {
     std::array<float, N> out{};
     const unsigned char* from = element(i);
     if (from == nullptr) return out;
+    if (component_ == component_float) {
+      std::memcpy(out.data(), from, sizeof out);
+      return out;
+    }
     for (std::size_t k = 0; k < N; ++k) out[k] = component(from, k);
     return out;
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "renderer/core/huge_pages.h"
+
 namespace lacuna::gltf {
 namespace {
 
@@ -50,7 +52,7 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
       continue;
     }
     const AccessorView view = source.view(name, ElementType::vec2, Components::quantized);
-    mesh.uvs[set].reserve(kept.size());
+    reserve_huge(mesh.uvs[set], kept.size());
     for (const std::uint32_t v : kept) {
       const auto uv = view.floats<2>(v);
       mesh.uvs[set].emplace_back(uv[0], uv[1]);

@@ -185,7 +185,7 @@ std::vector<PunctualLight> read_lights(const GltfObject& root, const std::vector
   const auto lights = extension ? extension->objects("lights") : std::vector<GltfObject>{};
   for (const PlacedNode& node : nodes) {
     const auto reference = node.place.extension("KHR_lights_punctual");
-    if (!reference) continue;
+    if (!reference || !node.visible) continue;
     const auto index =
         reference->index("light", lights.size(), "extensions.KHR_lights_punctual.lights");
     if (!index) continue;

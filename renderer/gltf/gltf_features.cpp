@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_guard.h"
@@ -149,6 +148,8 @@ constexpr auto feature_rows = std::to_array<Feature>({
      ""},
     {"KHR_mesh_quantization", Treatment::exact, "", ""},
     {"KHR_texture_transform", Treatment::exact, "", ""},
+    {"KHR_node_visibility", Treatment::exact,
+     "hides the meshes and lights at and below a node; cameras stay", ""},
     {"KHR_texture_basisu", Treatment::left_out, "the fallback image is read where there is one",
      "`gltf-transform ktxdecompress IN.glb OUT.glb` makes PNGs"},
     {"KHR_materials_dispersion", Treatment::left_out, "one index of refraction for all colours",
@@ -176,6 +177,19 @@ const Feature* find_extension(std::string_view extension) {
   return found == feature_rows.end() ? nullptr : &*found;
 }
 
+void add_extensions(const Json& value, std::set<std::string, std::less<>>& names) {
+  if (value.is_array()) {
+    for (const Json& element : value) add_extensions(element, names);
+  }
+  if (!value.is_object()) return;
+  for (const auto& [key, member] : value.items()) {
+    if (key == "extras") continue;
+    add_extensions(member, names);
+    if (key != "extensions" || !member.is_object()) continue;
+    for (const auto& [name, extension] : member.items()) names.insert(name);
+  }
+}
+
 std::string text_of(const Feature& f) {
   return fmt::format("{}{}{}", f.how, f.how.empty() || f.remedy.empty() ? "" : "; ", f.remedy);
 }
@@ -183,6 +197,15 @@ std::string text_of(const Feature& f) {
 }  // namespace
 
 std::span<const Feature> all_features() { return feature_rows; }
+
+std::set<std::string, std::less<>> extensions_of(const Json& file) {
+  std::set<std::string, std::less<>> names;
+  add_extensions(file, names);
+  if (const auto listed = file.find("extensionsUsed"); listed != file.end()) {
+    for (const Json& name : *listed) names.insert(name.get<std::string>());
+  }
+  return names;
+}
 
 std::string remedy_for(std::string_view extension) {
   const Feature* const f = find_extension(extension);
@@ -221,8 +244,8 @@ std::vector<FeatureUse> features_of(const std::filesystem::path& file) {
   GltfProblems problems(json, warnings);
   const GltfObject root(json, problems);
   check_structure(root, framing);
-  const auto named = root.strings("extensionsUsed");
-  std::set<std::string, std::less<>> extensions(named.begin(), named.end());
+  root.strings("extensionsUsed");  // are strings
+  auto extensions = extensions_of(json);
   std::vector<FeatureUse> uses;
   for (const Feature& f : all_features()) {
     const bool used =

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/json/json_text.h"
 
 namespace lacuna::gltf {
 
@@ -30,6 +34,8 @@ struct Feature {
 /// All that is known: the table of docs/scenes.md and of `lacuna check`. What is not in it is left
 /// out.
 std::span<const Feature> all_features();
+/// The extensions that a file lists as used, and those that it has anywhere but in extras.
+std::set<std::string, std::less<>> extensions_of(const Json& file);
 /// "; " and the remedy for an extension; empty: none is known.
 std::string remedy_for(std::string_view extension);
 /// The extensions that may stand in extensionsRequired, separated by commas.

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "renderer/core/huge_pages.h"
 #include "renderer/gltf/gltf_attributes.h"
 #include "renderer/gltf/gltf_duplicates.h"
 #include "renderer/gltf/gltf_instances.h"
@@ -34,7 +35,7 @@ struct Counts {
 std::vector<V3f> world_positions(const Source& source, const Vertices& vertices,
                                  const std::vector<std::uint32_t>& kept, const V3d& origin) {
   std::vector<V3f> out;
-  out.reserve(kept.size() + 1);  // as RayCaster wants it
+  reserve_huge(out, kept.size() + 1);  // as RayCaster wants it
   out.resize(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const V3d world = vertices.world(kept[i]);
@@ -58,14 +59,16 @@ Bounds bounds_of(const Vertices& vertices, const std::vector<std::uint32_t>& kep
 }
 
 std::vector<V3f> world_normals(const Vertices& vertices, const std::vector<std::uint32_t>& kept) {
-  std::vector<V3f> out(kept.size());
-  for (std::size_t i = 0; i < kept.size(); ++i) out[i] = vertices.world_normal(kept[i]);
+  std::vector<V3f> out;
+  reserve_huge(out, kept.size());
+  for (const std::uint32_t v : kept) out.push_back(vertices.world_normal(v));
   return out;
 }
 
 /// Gives every vertex without a usable normal the geometric one of the first triangle that uses it.
 std::uint64_t mend_normals(Mesh& mesh) {
   std::uint64_t mended = 0;
+  if (std::ranges::find(mesh.normals, V3f(0, 0, 0)) == mesh.normals.end()) return mended;
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) {
       if (mesh.normals[v] != V3f(0, 0, 0)) continue;
@@ -164,10 +167,11 @@ void check_total(const file::Model& model, const std::vector<PlacedNode>& nodes,
                  const SharedMeshes& shared, const std::vector<Material>& materials) {
   std::size_t total = 0;
   std::size_t moves = 0;
-  for (const PlacedNode& node : nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const PlacedNode& node = nodes[i];
     const auto mesh = mesh_of(model, node);
     if (!mesh) continue;
-    const bool instance = shared.placed_as_instance(model, node);
+    const bool instance = shared.placed_as_instance(i);
     for (const auto& primitive : model.meshes[*mesh].primitives) {
       if (!is_drawn(primitive)) continue;
       if (instance && !materials[material_of(primitive, materials)].emits()) continue;
@@ -289,8 +293,10 @@ void Builder::add_instances(const std::vector<PlacedNode>& nodes, const SharedMe
     Bounds box;
   };
   std::map<std::pair<std::size_t, bool>, Added> added;  // by mesh and whether it is mirrored
-  for (const PlacedNode& node : nodes) {
-    if (!shared.placed_as_instance(model_, node)) continue;
+  scene_.instances.reserve(shared.instances());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!shared.placed_as_instance(i)) continue;
+    const PlacedNode& node = nodes[i];
     const auto key = std::pair(*mesh_of(model_, node), node.mirrored);
     auto it = added.find(key);
     if (it == added.end()) {
@@ -347,16 +353,15 @@ std::uint64_t geometry_hash(const SceneData& scene) {
 
 }  // namespace
 
-void build_meshes(const file::Model& model, const std::vector<PlacedNode>& all_nodes,
+void build_meshes(const file::Model& model, const std::vector<PlacedNode>& nodes,
                   const Skins& skins, SceneData& scene, Warnings& warnings) {
-  const std::vector<PlacedNode> nodes = expand_instances(model, all_nodes, warnings);
   const SharedMeshes shared(model, nodes, scene.materials);
   check_total(model, nodes, shared, scene.materials);
   scene.origin = scene_origin(model, nodes, skins);
   Builder builder(model, skins, scene, warnings);
-  for (const PlacedNode& node : nodes) {
-    const bool instance = shared.placed_as_instance(model, node);
-    builder.add_node(node, instance ? Part::emitting : Part::all, scene.origin);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Part part = shared.placed_as_instance(i) ? Part::emitting : Part::all;
+    builder.add_node(nodes[i], part, scene.origin);
   }
   merge_equal_emitters(scene, warnings);
   builder.add_instances(nodes, shared);

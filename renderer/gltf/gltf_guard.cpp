@@ -82,6 +82,7 @@ Framing check_framing(std::span<const std::uint8_t> file) {
          std::to_string(length));
   }
   framing.bin_bytes = bin_bytes;
+  framing.bin_begin = json_end + chunk_header_bytes;
   return framing;
 }
 

@@ -12,9 +12,7 @@ struct Framing {
   bool binary = false;  ///< a GLB
   std::span<const std::uint8_t> json;
   std::uint64_t bin_bytes = 0;  ///< length of the BIN chunk; 0: none
-
-  /// The BIN chunk, behind the JSON and a header of 8 bytes.
-  std::span<const std::uint8_t> bin() const { return {json.data() + json.size() + 8, bin_bytes}; }
+  std::uint64_t bin_begin = 0;  ///< where it begins in the file
 };
 
 /// Splits a file into its chunks. A file with the magic bytes of GLB is a GLB, any other is JSON.

@@ -93,14 +93,21 @@ std::size_t shared_triangles(const file::Model& model, const file::Mesh& mesh,
 
 }  // namespace
 
-std::vector<PlacedNode> expand_instances(const file::Model& model, std::vector<PlacedNode> nodes,
-                                         Warnings& warnings) {
+std::optional<std::vector<PlacedNode>> expand_instances(const file::Model& model,
+                                                        const std::vector<PlacedNode>& nodes,
+                                                        Warnings& warnings) {
+  const auto extension_of = [](const PlacedNode& node) {
+    return node.place.extension("EXT_mesh_gpu_instancing");
+  };
+  if (std::ranges::none_of(nodes, [&](const auto& n) { return extension_of(n).has_value(); })) {
+    return std::nullopt;
+  }
   std::vector<PlacedNode> out;
   out.reserve(nodes.size());
-  for (PlacedNode& node : nodes) {
-    const auto extension = node.place.extension("EXT_mesh_gpu_instancing");
+  for (const PlacedNode& node : nodes) {
+    const auto extension = extension_of(node);
     if (!extension) {
-      out.push_back(std::move(node));
+      out.push_back(node);
       continue;
     }
     const InstanceAttributes attributes(model, node.place, *extension, warnings);
@@ -108,6 +115,8 @@ std::vector<PlacedNode> expand_instances(const file::Model& model, std::vector<P
       node.place.fail("more than " + std::to_string(max_instances) +
                       " instances in all down to here");
     }
+    const std::size_t needed = out.size() + attributes.size();
+    if (needed > out.capacity()) out.reserve(std::max(needed, 2 * out.capacity()));
     for (std::size_t i = 0; i < attributes.size(); ++i) {
       PlacedNode& instance = out.emplace_back(node);
       instance.to_world = attributes.transform(i) * node.to_world;
@@ -125,25 +134,25 @@ std::vector<PlacedNode> expand_instances(const file::Model& model, std::vector<P
 SharedMeshes::SharedMeshes(const file::Model& model, const std::vector<PlacedNode>& nodes,
                            const std::vector<Material>& materials) {
   std::vector<std::size_t> uses(model.meshes.size());
-  for (const PlacedNode& node : nodes) {
-    const auto mesh = mesh_of(model, node);
-    if (mesh && can_share(node)) ++uses[*mesh];
+  is_instance_.resize(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto mesh = mesh_of(model, nodes[i]);
+    is_instance_[i] = mesh && can_share(nodes[i]);
+    if (is_instance_[i]) ++uses[*mesh];
   }
   std::size_t copies = 0;
-  shared_.resize(model.meshes.size());
+  std::vector<bool> shared(model.meshes.size());
   for (std::size_t m = 0; m < uses.size(); ++m) {
     if (uses[m] < 2) continue;
     const std::size_t triangles = shared_triangles(model, model.meshes[m], materials);
-    shared_[m] = triangles > 0;
+    shared[m] = triangles > 0;
     copies += (uses[m] - 1) * triangles;  // of 2^24 nodes and 2^27 triangles at most, and as many
   }
-  any_ = copies > max_copied_triangles;
-}
-
-bool SharedMeshes::placed_as_instance(const file::Model& model, const PlacedNode& node) const {
-  if (!any_) return false;
-  const auto mesh = mesh_of(model, node);
-  return mesh && shared_[*mesh] && can_share(node);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!is_instance_[i]) continue;
+    is_instance_[i] = copies > max_copied_triangles && shared[*mesh_of(model, nodes[i])];
+    if (is_instance_[i]) ++instances_;
+  }
 }
 
 }  // namespace lacuna::gltf

@@ -3,8 +3,10 @@
 #include "renderer/gltf/gltf_animation.h"
 #include "renderer/gltf/gltf_cameras.h"
 #include "renderer/gltf/gltf_environment.h"
+#include "renderer/gltf/gltf_features.h"
 #include "renderer/gltf/gltf_geometry.h"
 #include "renderer/gltf/gltf_guard.h"
+#include "renderer/gltf/gltf_instances.h"
 #include "renderer/gltf/gltf_load.h"
 #include "renderer/gltf/gltf_material_choice.h"
 #include "renderer/gltf/gltf_materials.h"
@@ -16,7 +18,8 @@ namespace lacuna {
 namespace gltf {
 namespace {
 
-void warn_of_unread_parts(const GltfObject& root, const SceneChoice& choice, Warnings& warnings) {
+void warn_of_unread_parts(const Json& json, const GltfObject& root, const SceneChoice& choice,
+                          Warnings& warnings) {
   if (root.array_size("animations") > 0 && !choice.seconds) {
     warnings.once(
         "animations are left out: the scene is in its static pose; the job's time shows "
@@ -25,7 +28,8 @@ void warn_of_unread_parts(const GltfObject& root, const SceneChoice& choice, War
   if (!choice.animation.empty() && !choice.seconds) {
     warnings.once("animation " + in_quotes(choice.animation) + " is left out, as no time is given");
   }
-  for (const std::string& name : root.strings("extensionsUsed")) {
+  root.strings("extensionsUsed");  // are strings
+  for (const std::string& name : extensions_of(json)) {
     if (!extension_supported(name)) warnings.once(unsupported_extension(name));
   }
 }
@@ -44,7 +48,7 @@ void add_choice(const SceneChoice& choice, Hasher& content) {
 SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs,
                const SceneChoice& choice) {
   SceneFolder folder(file);
-  const Bytes bytes = folder.read_main();
+  Bytes bytes = folder.read_main();
   const Framing framing = check_framing(bytes);
   const Json json = parse_json(framing.json);
   Warnings warnings, unused;
@@ -71,7 +75,7 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
 
   Hasher content;
   content.add(std::span<const std::uint8_t>(bytes));
-  file::Model model = read_model(bytes, framing, root, folder, content);
+  file::Model model = read_model(std::move(bytes), framing, json, root, folder, content);
   choose_materials(root, choice.variant, scene.materials.size(), model);
   Pose pose;
   if (choice.seconds) {
@@ -80,14 +84,15 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
   }
   add_choice(choice, content);
   const Skins skins = pose_skins(root, model, nodes, node_transforms(root, pose));
-  build_meshes(model, nodes, skins, scene, warnings);
+  const auto expanded = expand_instances(model, nodes, warnings);
+  build_meshes(model, expanded ? *expanded : nodes, skins, scene, warnings);
   if (choice.seconds || scene.origin != V3d(0.0)) place_cameras_and_lights(root, warnings);
   warn_of_far_cameras(scene, warnings);
   convert_lights(root, choice.light_units, scene.lights, warnings);
   scene.textures = textures.build(model, folder, content);
   scene.content_hash = content.digest();
   if (inputs != nullptr) *inputs = folder.inputs();
-  warn_of_unread_parts(root, choice, warnings);
+  warn_of_unread_parts(json, root, choice, warnings);
   scene.warnings = warnings.take();
   return scene;
 }

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/json/json_text.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_compression.h"
 #include "renderer/gltf/gltf_draco.h"
@@ -21,72 +22,75 @@
 namespace lacuna::gltf {
 namespace {
 
-/// The buffers that tinygltf requests as files, in the order of the glTF file, in which it requests
-/// them.
+/// The buffers, in the order of the glTF file, in which tinygltf requests them.
 using BufferQueue = std::deque<Bytes>;
 
-bool is_compressed(const GltfObject& root) {
-  const auto buffers = root.objects("buffers");
-  return std::any_of(buffers.begin(), buffers.end(), is_fallback) || has_draco(root);
-}
-
-Bytes read_external(const GltfObject& buffer, const std::string& uri, std::uint64_t needed,
-                    SceneFolder& folder, Hasher& content) {
-  Bytes bytes = folder.read(uri, buffer.label(), InputRole::buffer);
+Bytes read_uri(const GltfObject& buffer, std::uint64_t needed, SceneFolder& folder,
+               Hasher& content) {
+  const std::string uri = buffer.string("uri");
+  const bool inside = uri.starts_with("data:");
+  Bytes bytes =
+      inside ? decode_data_uri(buffer, uri) : folder.read(uri, buffer.label(), InputRole::buffer);
   if (bytes.size() < needed) {
     buffer.fail(in_quotes(uri) + " has " + std::to_string(bytes.size()) + " bytes; byteLength is " +
                 std::to_string(needed));
   }
-  content.add(std::span<const std::uint8_t>(bytes));
+  if (!inside) content.add(std::span<const std::uint8_t>(bytes));
   bytes.resize(needed);  // a longer file is legal, but tinygltf wants the exact size
   return bytes;
 }
 
-BufferQueue read_buffers(const Framing& framing, const GltfObject& root, SceneFolder& folder,
-                         Hasher& content) {
+/// The BIN chunk of `file`, in its memory: a copy would double that of a large scene.
+Bytes bin_of(Bytes file, const Framing& framing, std::uint64_t needed) {
+  const auto first = file.begin() + static_cast<std::ptrdiff_t>(framing.bin_begin);
+  std::copy_n(first, needed, file.begin());
+  file.resize(needed);
+  return file;
+}
+
+BufferQueue read_buffers(Bytes file, const Framing& framing, const GltfObject& root,
+                         SceneFolder& folder, Hasher& content) {
   BufferQueue queue;
-  const bool bin_is_a_file = is_compressed(root);
   for (const GltfObject& buffer : root.objects("buffers")) {
     const std::uint64_t needed = buffer.integer("byteLength", 1, ~std::uint32_t{0});
     if (is_fallback(buffer)) {
       queue.emplace_back(needed);
     } else if (!buffer.has("uri")) {
-      const auto bin = framing.bin();
-      if (bin_is_a_file) queue.emplace_back(bin.begin(), bin.begin() + static_cast<long>(needed));
+      queue.push_back(bin_of(std::move(file), framing, needed));
     } else {
-      const std::string uri = buffer.string("uri");
-      refuse_data_uri(buffer, uri);
-      if (tinygltf::IsDataURI(uri)) continue;
-      queue.push_back(read_external(buffer, uri, needed, folder, content));
+      queue.push_back(read_uri(buffer, needed, folder, content));
     }
   }
   return queue;
 }
 
-/// The JSON of a compressed file without what tinygltf refuses: buffers without data, which get the
-/// uri of a file, as does the BIN chunk, and indices without data.
-std::string json_of_compressed(const Framing& framing, const GltfObject& root) {
-  Json json = parse_json(framing.json);
-  std::size_t i = 0;
-  for (const GltfObject& buffer : root.objects("buffers")) {
-    Json& named = json["buffers"][i++];
-    if (is_fallback(buffer) || !buffer.has("uri")) named["uri"] = "queued";
+/// The part of the JSON of which tinygltf's model is used. All buffers have the uri of a file, and
+/// primitives no indices without data, which tinygltf refuses.
+std::string text_for_tinygltf(const Json& json, const GltfObject& root) {
+  Json part;
+  for (const char* key : {"asset", "bufferViews", "accessors", "meshes"}) {
+    if (json.contains(key)) part[key] = json[key];
   }
-  const auto accessors = root.objects("accessors");
-  std::size_t m = 0;
-  for (const GltfObject& mesh : root.objects("meshes")) {
-    Json& primitives = json["meshes"][m++]["primitives"];
-    std::size_t p = 0;
-    for (const GltfObject& primitive : mesh.objects("primitives")) {
-      if (is_draco(primitive, accessors)) primitives[p].erase("indices");
-      ++p;
+  for (const GltfObject& buffer : root.objects("buffers")) {
+    part["buffers"].push_back(
+        {{"byteLength", buffer.integer("byteLength", 1, ~std::uint32_t{0})}, {"uri", "queued"}});
+  }
+  if (has_draco(root)) {
+    const auto accessors = root.objects("accessors");
+    std::size_t m = 0;
+    for (const GltfObject& mesh : root.objects("meshes")) {
+      Json& primitives = part["meshes"][m++]["primitives"];
+      std::size_t p = 0;
+      for (const GltfObject& primitive : mesh.objects("primitives")) {
+        if (is_draco(primitive, accessors)) primitives[p].erase("indices");
+        ++p;
+      }
     }
   }
-  return json.dump();
+  return json_text(part);
 }
 
-/// tinygltf never accesses the file system: buffers come from the queue, images are not decoded. It
-/// takes a data: URI of an unknown kind for the name of a file.
+/// tinygltf never accesses the file system: buffers come from the queue.
 tinygltf::FsCallbacks callbacks(BufferQueue& queue) {
   tinygltf::FsCallbacks fs{};
   fs.user_data = &queue;
@@ -106,41 +110,22 @@ tinygltf::FsCallbacks callbacks(BufferQueue& queue) {
   return fs;
 }
 
-bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
-  return true;
-}
-
 std::string first_line(const std::string& text) {
   constexpr std::size_t longest = 200;
   return text.substr(0, std::min(text.find('\n'), longest));
 }
 
-/// Buffers are filled; images keep their encoded bytes only if they came as a data: URI.
-tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
-                            const GltfObject& root, SceneFolder& folder, Hasher& content) {
-  BufferQueue queue = read_buffers(framing, root, folder, content);
-  std::string text;
-  if (is_compressed(root)) text = json_of_compressed(framing, root);
+tinygltf::Model parse_model(const std::string& text, BufferQueue queue) {
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(callbacks(queue));
-  parser.SetImageLoader(keep_encoded, nullptr);
   tinygltf::Model model;
   std::string error;
   std::string warning;
   bool parsed = false;
   try {
     // No base folder: only the callbacks get the names.
-    if (framing.binary && text.empty()) {
-      parsed = parser.LoadBinaryFromMemory(&model, &error, &warning, file.data(),
-                                           static_cast<unsigned>(file.size()), "");
-    } else {
-      const auto* first = text.empty() ? reinterpret_cast<const char*>(file.data()) : text.data();
-      const std::size_t size = text.empty() ? file.size() : text.size();
-      parsed = parser.LoadASCIIFromString(&model, &error, &warning, first,
-                                          static_cast<unsigned>(size), "");
-    }
+    parsed = parser.LoadASCIIFromString(&model, &error, &warning, text.data(),
+                                        static_cast<unsigned>(text.size()), "");
   } catch (const std::bad_alloc&) {
     throw;  // not the fault of the file
   } catch (const std::exception& e) {
@@ -212,7 +197,6 @@ file::Model translated(tinygltf::Model from) {
                             .sparse = translated_sparse(a)});
   }
   for (tinygltf::Mesh& m : from.meshes) to.meshes.push_back(translated(m));
-  for (tinygltf::Image& i : from.images) to.images.push_back(std::move(i.image));
   return to;
 }
 
@@ -228,30 +212,25 @@ std::size_t component_count(ElementType type) {
   return counts[static_cast<std::size_t>(type)];
 }
 
-void refuse_data_uri(const GltfObject& place, const std::string& uri) {
-  if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
+Bytes decode_data_uri(const GltfObject& place, std::string uri) {
+  for (const std::string_view kind : {"data:image/webp;base64,", "data:image/tiff;base64,"}) {
+    if (uri.starts_with(kind)) uri.replace(0, kind.size(), "data:image/png;base64,");  // as known
+  }
+  if (!tinygltf::IsDataURI(uri)) {
     place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
                "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
                "image/png, image/jpeg, image/webp or image/tiff");
   }
+  Bytes bytes;
+  std::string type;
+  if (!tinygltf::DecodeDataURI(&bytes, type, uri, 0, false)) place.fail("uri is not base64");
+  return bytes;
 }
 
-std::optional<Bytes> image_of_data_uri(const GltfObject& image, const std::string& uri) {
-  for (const std::string_view kind : {"data:image/webp;base64,", "data:image/tiff;base64,"}) {
-    if (!uri.starts_with(kind)) continue;
-    Bytes bytes;
-    std::string type;
-    const std::string known = "data:image/png;base64," + uri.substr(kind.size());
-    if (!tinygltf::DecodeDataURI(&bytes, type, known, 0, false)) image.fail("uri is not base64");
-    return bytes;
-  }
-  refuse_data_uri(image, uri);
-  return std::nullopt;
-}
-
-file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,
-                       const GltfObject& root, SceneFolder& folder, Hasher& content) {
-  file::Model model = translated(parse_model(file, framing, root, folder, content));
+file::Model read_model(Bytes file, const Framing& framing, const Json& json, const GltfObject& root,
+                       SceneFolder& folder, Hasher& content) {
+  BufferQueue queue = read_buffers(std::move(file), framing, root, folder, content);
+  file::Model model = translated(parse_model(text_for_tinygltf(json, root), std::move(queue)));
   decode_meshopt(root, model);
   decode_draco(root, model);
   return model;

@@ -69,7 +69,6 @@ struct Model {
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
   std::vector<Mesh> meshes;
-  std::vector<Bytes> images;  ///< encoded; empty but for those that came as a data: URI
 
   const std::uint8_t* bytes_of(std::size_t view, std::size_t offset = 0) const {
     return buffers[views[view].buffer].data() + views[view].offset + offset;
@@ -78,15 +77,14 @@ struct Model {
 
 }  // namespace file
 
-/// Parses a file that check_structure() has validated, by tinygltf. External buffers are read
-/// through `folder` and enter `content`; compressed data are decoded. Throws SceneError.
-file::Model read_model(std::span<const std::uint8_t> file, const Framing& framing,
-                       const GltfObject& root, SceneFolder& folder, Hasher& content);
+/// Parses a file that check_structure() has validated, by tinygltf. The buffers take the memory of
+/// `file`, if it is a GLB. External buffers are read through `folder` and enter `content`;
+/// compressed data are decoded. Throws SceneError.
+file::Model read_model(Bytes file, const Framing& framing, const Json& json, const GltfObject& root,
+                       SceneFolder& folder, Hasher& content);
 
-/// Throws SceneError for a data: URI of a kind that tinygltf does not decode.
-void refuse_data_uri(const GltfObject& place, const std::string& uri);
-/// The image of a data: URI that tinygltf leaves as it is, a WebP or TIFF; none if `uri` is a path.
-/// Throws SceneError for other kinds.
-std::optional<Bytes> image_of_data_uri(const GltfObject& image, const std::string& uri);
+/// The bytes of the data: URI of a buffer or image. Throws SceneError for kinds that tinygltf does
+/// not decode, but for WebP and TIFF, and if it is no base64.
+Bytes decode_data_uri(const GltfObject& place, std::string uri);
 
 }  // namespace lacuna::gltf

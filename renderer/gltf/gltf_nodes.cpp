@@ -121,6 +121,7 @@ struct Visit {
   int level;
   M44d to_world, turn;
   int rank = 3;
+  bool visible = true;
   std::size_t flat_at = none;  ///< the last ancestor that lowered the rank
 };
 
@@ -181,6 +182,9 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root, const Pose& pose, Wa
       visit.rank = own;
       visit.flat_at = visit.node;
     }
+    if (const auto own = node.extension("KHR_node_visibility")) {
+      visit.visible = own->boolean("visible", true) && visit.visible;
+    }
     if (carries_something(node)) {
       if (!all_finite(visit.to_world) || !all_finite(visit.turn)) {
         node.fail("its transform, with those of its parents, is too large or not finite");
@@ -191,7 +195,8 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root, const Pose& pose, Wa
       const bool can_turn = rank_of(visit.turn) == 3;
       placed.push_back({node, visit.to_world, visit.rank, visit.turn, can_turn,
                         can_turn && determinant3(visit.turn) < 0,
-                        morph_weights(node, meshes, pose_of(pose, visit.node)), skin});
+                        morph_weights(node, meshes, pose_of(pose, visit.node)), skin,
+                        visit.visible});
     }
     const auto children = node.indices("children", nodes.size(), "nodes");
     for (auto it = children.rbegin(); it != children.rend(); ++it) {

@@ -21,6 +21,7 @@ struct PlacedNode {
   bool mirrored = false;            ///< a left-handed `turn`
   std::vector<double> weights;      ///< of the mesh's morph targets; none: 0
   std::optional<std::size_t> skin;  ///< of a node with a mesh
+  bool visible = true;              ///< KHR_node_visibility of it and of all nodes above
 };
 
 /// The nodes with a mesh, camera or light in the default scene, in depth-first order. A file

@@ -16,12 +16,11 @@ namespace {
 /// or in the world's.
 Bounds posed_bounds(const Source& source, const Vertices& vertices, bool in_world) {
   Bounds box;
-  const auto triangles =
-      assemble_triangles(source.model, source.primitive(), vertices.size(), false, source.place());
-  for (const Triangle& t : triangles) {
-    for (const std::uint32_t v : t) {
-      if (const V3f x(in_world ? vertices.world(v) : vertices.local(v)); is_finite(x)) box.add(x);
-    }
+  const auto used =
+      used_vertices(source.model, source.primitive(), vertices.size(), source.place());
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] == 0) continue;
+    if (const V3f x(in_world ? vertices.world(v) : vertices.local(v)); is_finite(x)) box.add(x);
   }
   return box;
 }

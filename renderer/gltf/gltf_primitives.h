@@ -24,10 +24,10 @@ inline std::size_t material_of(const file::Primitive& primitive,
                                  : materials.size() - 1;
 }
 
-/// The index of a node's mesh; none if it has no mesh, or if its scale leaves nothing of it. A
-/// skinned mesh is placed by its joints, whatever the scale of its node.
+/// The index of a node's mesh; none if it has no mesh, if it is invisible, or if its scale leaves
+/// nothing of it. A skinned mesh is placed by its joints, whatever the scale of its node.
 inline std::optional<std::size_t> mesh_of(const file::Model& model, const PlacedNode& node) {
-  if (node.rank < 2 && !node.skin) return std::nullopt;
+  if (!node.visible || (node.rank < 2 && !node.skin)) return std::nullopt;
   return node.place.index("mesh", model.meshes.size(), "meshes");
 }
 

@@ -26,15 +26,13 @@ V2f to_v2f(const std::array<double, 2>& a) {
 
 constexpr std::uint64_t last_uv_set = 1;
 
-Bytes encoded_bytes(const GltfObject& image, const Bytes& inside, const file::Model& model,
-                    SceneFolder& folder) {
+Bytes encoded_bytes(const GltfObject& image, const file::Model& model, SceneFolder& folder) {
   if (const auto view = image.index("bufferView", model.views.size(), "bufferViews")) {
     const auto* first = model.bytes_of(*view);
     return {first, first + model.views[*view].bytes};
   }
-  if (!inside.empty()) return inside;
   const std::string uri = image.string("uri");
-  if (auto bytes = image_of_data_uri(image, uri)) return std::move(*bytes);
+  if (uri.starts_with("data:")) return decode_data_uri(image, uri);
   return folder.read(uri, image.label(), InputRole::texture);
 }
 
@@ -106,7 +104,7 @@ std::vector<std::unique_ptr<Texture>> TextureTable::build(const file::Model& mod
   std::uint64_t all_bytes = 0;
   for (const Entry& entry : entries_) {
     const GltfObject& image = images_[entry.image];
-    Bytes bytes = encoded_bytes(image, model.images[entry.image], model, folder);
+    Bytes bytes = encoded_bytes(image, model, folder);
     all_bytes += bytes.size();
     if (all_bytes > most_bytes) {
       image.fail("is one too many: the textures have more than " + std::to_string(most_bytes) +

@@ -20,6 +20,10 @@ std::vector<Triangle> assemble_triangles(const file::Model& model, const file::P
                                          std::size_t vertices, bool mirrored,
                                          const std::string& place);
 
+/// For each vertex 1 if a triangle uses it, else 0. Throws as assemble_triangles().
+std::vector<std::uint8_t> used_vertices(const file::Model& model, const file::Primitive& primitive,
+                                        std::size_t vertices, const std::string& place);
+
 /// Number of triangles of the primitive, without reading them.
 std::size_t count_triangles(const file::Model& model, const file::Primitive& primitive);
 

@@ -377,6 +377,15 @@ TEST(Features, RequiredButLeftOutAreRefusedWithARemedy) {
   }
 }
 
+TEST(Features, AreNamedAlsoWhereTheFileDoesNotListThem) {
+  const Json glass{{"extensions", {{"KHR_materials_dispersion", {{"dispersion", 0.1}}}}}};
+  const SceneData scene = load(quad_of(glass));
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_EQ(scene.warnings[0], "extension KHR_materials_dispersion is not supported and left out");
+  const Json note{{"extras", glass}};
+  EXPECT_TRUE(load(quad_of(note)).warnings.empty());
+}
+
 TEST(Features, AreOnThePage) {
   std::ifstream page(std::string(LACUNA_SOURCE_DIR) + "/docs/scenes.md");
   const std::string text(std::istreambuf_iterator<char>(page), {});

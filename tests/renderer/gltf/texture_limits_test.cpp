@@ -37,7 +37,7 @@ std::string texture_refusal(const test::GlbBuilder& builder, std::uint64_t most_
   gltf::TextureTable textures(root, warnings);
   gltf::read_materials(root, textures, warnings);
   Hasher content;
-  const gltf::file::Model model = gltf::read_model(bytes, framing, root, folder, content);
+  const gltf::file::Model model = gltf::read_model(bytes, framing, json, root, folder, content);
   return test::refusal_of([&] { textures.build(model, folder, content, most_bytes); });
 }
 
