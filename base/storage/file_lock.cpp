@@ -33,8 +33,6 @@ std::optional<FileLock> FileLock::try_take(const std::filesystem::path& file) {
   }
 }
 
-bool FileLock::is_named() const { return has_name(handle_.get(), file_); }
-
 void FileLock::note(std::string_view text) const {
   if (::ftruncate(handle_.get(), 0) != 0) return;
   [[maybe_unused]] const ssize_t written = ::pwrite(handle_.get(), text.data(), text.size(), 0);

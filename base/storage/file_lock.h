@@ -20,8 +20,6 @@ class FileLock {
   FileLock& operator=(FileLock&&) = delete;
   ~FileLock();
 
-  /// Whether the file still has its name: it was neither removed nor replaced.
-  bool is_named() const;
   /// Writes `text`, which names the owner for people, into the file. Ignores errors.
   void note(std::string_view text) const;
   /// Also removes the file on release; the next owner creates a new one.

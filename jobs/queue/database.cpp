@@ -60,8 +60,6 @@ void Database::run(const char* sql) {
 
 bool Database::in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
 
-std::int64_t Database::last_number() const { return sqlite3_last_insert_rowid(handle_); }
-
 void Database::fail(int code) const {
   const char* said = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
   const std::string text = fmt::format("{}: {}", file_.string(), said);

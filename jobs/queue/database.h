@@ -37,8 +37,6 @@ class Database {
   /// Runs statements that return no rows.
   void run(const char* sql);
   bool in_transaction() const;
-  /// Number of the row inserted last.
-  std::int64_t last_number() const;
   /// Throws the exception for the result `code` of a call.
   [[noreturn]] void fail(int code) const;
 

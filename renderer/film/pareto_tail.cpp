@@ -17,13 +17,9 @@ double shape(std::span<const double> x, double theta) {
   return sum / double(x.size());
 }
 
-struct Fit {
-  double shape, scale;
-};
-
-/// Fits a generalized Pareto distribution to `x` > 0, ascending: theta is the mean over a grid,
-/// weighted by the profile likelihood (Zhang and Stephens 2009).
-Fit fit(std::span<const double> x) {
+/// The shape of a generalized Pareto distribution fitted to `x` > 0, ascending: theta is the mean
+/// over a grid, weighted by the profile likelihood (Zhang and Stephens 2009).
+double fitted_shape(std::span<const double> x) {
   constexpr double prior = 3;
   const auto n = double(x.size());
   const double quartile = x[std::size_t(std::lround(n / 4)) - 1];
@@ -41,8 +37,7 @@ Fit fit(std::span<const double> x) {
     weights += weight;
     mean += weight * theta[j];
   }
-  const double k = shape(x, mean / weights);
-  return {k, -k / (mean / weights)};
+  return shape(x, mean / weights);
 }
 
 }  // namespace
@@ -61,32 +56,11 @@ std::optional<ParetoTail> pareto_tail(std::span<const double> largest, std::uint
     if (v > threshold) exceedances.push_back((v - threshold) / scale);
   }
   ParetoTail result{.index = std::numeric_limits<double>::infinity(),
-                    .limit = std::min(1 - 1 / std::log10(n), 0.7),
-                    .threshold = threshold};
+                    .limit = std::min(1 - 1 / std::log10(n), 0.7)};
   if (exceedances.size() < least_exceedances) return result;
   const auto m = double(exceedances.size());
-  const Fit found = fit(exceedances);
-  result.index = (m * found.shape + 5) / (m + 10);
-  result.scale = found.scale * scale;
-  result.share = m / n;
+  result.index = (m * fitted_shape(exceedances) + 5) / (m + 10);
   return result;
-}
-
-double ParetoTail::mean_above(double count) const {
-  const double beyond =
-      1 / (count * share);  // the part of the tail above the largest expected value
-  if (!(beyond < 1) || !std::isfinite(index)) return 0;
-  const double reached = 1 - beyond;
-  const double k = index;
-  double mean = 0;  // of ((1 - p)^-k - 1) / k over p in [0, reached]
-  if (std::abs(k) < 1e-6) {
-    mean = reached + beyond * std::log(beyond);
-  } else if (std::abs(k - 1) < 1e-6) {
-    mean = -std::log(beyond) - reached;
-  } else {
-    mean = ((1 - std::pow(beyond, 1 - k)) / (1 - k) - reached) / k;
-  }
-  return share * (reached * threshold + scale * mean);
 }
 
 }  // namespace lacuna

@@ -14,14 +14,8 @@ struct ParetoTail {
   double index = 0;
   /// The mean of this number of values is reliable up to this index (Vehtari et al. 2024).
   double limit = 0;
-  /// Above `threshold`, which the fraction `share` of all values exceeds, values are distributed as
-  /// threshold + scale ((1 - p)^-index - 1) / index, p uniform.
-  double threshold = 0, scale = 0, share = 0;
 
   bool mean_is_known() const { return index <= limit; }
-  /// The contribution of values above the threshold to the mean of all, up to the largest value
-  /// expected among `count` values. It grows with `count`, because rare values are yet to occur.
-  double mean_above(double count) const;
 };
 
 /// The minimum number of values for fitting a tail.
