@@ -43,7 +43,7 @@ test("import: a missing mesh is an error, or a line", async (t) => {
   writeScene(folder, "gone.obj");
   const refused = await run(folder, "import", "room.xml");
   assert.equal(refused.code, 3);
-  assert.match(refused.err, /room\.xml:8: gone\.obj does not exist; --missing skip leaves missing files out/);
+  assert.match(refused.err, /room\.xml:8: gone\.obj does not exist; --missing skip leaves such files out/);
   const skipped = await run(folder, "import", "room.xml", "--missing", "skip");
   assert.equal(skipped.code, 0, skipped.err);
   assert.match(skipped.out, /^room\.xml:8 +shape \(obj\) +left out +gone\.obj is missing$/m);
