@@ -61,11 +61,13 @@ def main():
         "job": {**JOB, "reference": "reference.job/image.exr", "budget": {"cpu_seconds": options.seconds}}}))
     peers.lacuna(bench, "sweep", sweep, "--out", folder / "first.sweep", "--quiet")
     spec = json.loads(peers.lacuna(bench, "figure", "--suggest", folder / "first.sweep"))
-    spec["scenes"][0]["name"] = "Lit through a door ajar"
+    spec["scenes"][0]["name"] = "Door ajar"
     for method, name in zip(spec["methods"], ("Cycles", *METHODS)):
         method["name"] = name
     figure, png = folder / "figure.json", folder / "figure.png"
-    figure.write_text(json.dumps({**spec, "sweep": "first.sweep", "show": ["pictures", "table"], "dpi": 143}))
+    # Times to equal FLIP: relMSE is that of the brightest outlier.
+    figure.write_text(json.dumps({**spec, "sweep": "first.sweep", "show": ["pictures", "table"],
+                                  "metrics": ["flip", "relmse"], "dpi": 143}))
     peers.lacuna(bench, "figure", figure, "-o", png, "-o", folder / "figure.md")
     subprocess.run(["oiiotool", png, "--compression", "jpeg:90", "-o", options.out], check=True)
     print((folder / "figure.md").read_text())
