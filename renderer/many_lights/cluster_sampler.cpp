@@ -12,29 +12,17 @@ struct ClusterSampler::Tile {
   std::vector<std::size_t> ends = {};  // end of the blocks whose lights reach each point
 };
 
-/// Of a few lights of the node, in equal steps.
-float ClusterSampler::mean_rate(const VplTree::Node& node, std::uint32_t cell,
-                                const Rates& rates) const {
-  constexpr std::uint64_t most = 8;
-  const std::uint64_t n = node.end - node.first, count = std::min(n, most);
-  float sum = 0;
-  for (std::uint64_t k = 0; k < count; ++k) {
-    const std::uint64_t light = node.first + (2 * k + 1) * n / (2 * count);
-    sum += rates.of(cell, tree_.block(static_cast<std::uint32_t>(light)));
-  }
-  return sum / static_cast<float>(count);
-}
-
 ClusterSampler::Entry ClusterSampler::weigh(std::uint32_t index, const Tile& tile) const {
   const VplTree::Node& node = tree_.node(index);
   const std::size_t block = tree_.block(node.first);  // all lights have the edges of the first
+  const std::size_t middle = tree_.block(node.first + (node.end - node.first) / 2);
   Entry entry{index, 0, {}};
   Lanes roots;
   for (std::size_t i = 0; i < tile.points.size(); ++i) {
     const int at = static_cast<int>(i);
     const auto cells = tile.rates.cells.first(i);
     const auto same = std::find(cells.begin(), cells.end(), tile.rates.cells[i]);
-    roots[at] = same == cells.end() ? std::sqrt(mean_rate(node, tile.rates.cells[i], tile.rates))
+    roots[at] = same == cells.end() ? std::sqrt(tile.rates.of(tile.rates.cells[i], middle))
                                     : roots[static_cast<int>(same - cells.begin())];
     entry.weights[at] = block < tile.ends[i] ? roots[at] : 0;
   }

@@ -14,9 +14,9 @@ namespace lacuna {
 ///
 /// and a light of the node in proportion to its intensity. I is the node's intensity, G an estimate
 /// of its geometric term, which is 0 only if none of its lights illuminates the point, and r the
-/// learned rate of visibility between the cells of point and node: of sampling the product of I G
-/// and a visibility that is 1 with probability r, w minimises the variance. Contributions are
-/// divided by the probability, so the estimate is unbiased for any r.
+/// learned rate of visibility between the cell of the point and that of the node's middle light: of
+/// sampling the product of I G and a visibility that is 1 with probability r, w minimises the
+/// variance. Contributions are divided by the probability, so the estimate is unbiased for any r.
 class ClusterSampler {
  public:
   using Sample = VplSampler::Sample;
@@ -43,7 +43,6 @@ class ClusterSampler {
     Lanes weights;  // w of each point
   };
   struct Tile;
-  float mean_rate(const VplTree::Node& node, std::uint32_t cell, const Rates& rates) const;
   Entry weigh(std::uint32_t node, const Tile& tile) const;
   std::vector<Entry> cut(const Tile& tile) const;
   void sample_for(const ShadingPoint& at, std::size_t point, std::span<const Entry> cut,
