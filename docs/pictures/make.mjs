@@ -1,4 +1,4 @@
-// Makes the pictures of docs/ and of the page anew: `./dev pictures`, about four minutes on two cores.
+// Renders the pictures of docs/ and of the page: `./dev pictures` runs it after first_page.py; four minutes on two cores.
 // It starts the service, renders the jobs below, and takes pictures of the page, and of pages that it
 // composes itself, in headless Chromium. It prints the errors that stand below the pictures. With --again it
 // takes the pictures of the jobs that it rendered last.

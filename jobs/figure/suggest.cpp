@@ -118,7 +118,8 @@ class Suggestion {
       OrderedJson object = parse_own(value.text);
       if (!object.is_object()) continue;
       const auto is_common = [&](const std::string& key) {
-        return key != "type" && std::ranges::all_of(spec_.methods, [&](const FigureMethod& m) {
+        return key != "type" && key != "name" &&
+               std::ranges::all_of(spec_.methods, [&](const FigureMethod& m) {
                  const OrderedJson other = parse_own(m.settings.at(pointer).text);
                  return other.is_object() && other.value(key, OrderedJson()) == object.at(key);
                });
@@ -136,12 +137,11 @@ class Suggestion {
   void name_methods() {
     for (FigureMethod& method : spec_.methods) {
       method.name = cell_text(own_settings(method));
-      if (method.name.empty()) method.name = "the job";
-      // The value alone where one setting tells the methods apart, and is no number.
+      // The value alone where the methods differ in one setting, and it is no number.
       const char first =
           method.settings.size() == 1 ? method.settings.begin()->second.text[0] : ' ';
       if (first == '"' || first == '{') method.name.erase(0, method.name.find(' ') + 1);
-      method.name = shortened(method.name);
+      method.name = method.name.empty() ? "the job" : shortened(method.name);
     }
   }
 

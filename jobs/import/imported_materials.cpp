@@ -88,7 +88,7 @@ Rgb ImportedMaterials::within_one(const ImportedMaterial& m, const Rgb& color,
                                   const std::string& what) {
   Rgb out = color;
   for (int c = 0; c < 3; ++c) out[c] = std::clamp(out[c], 0.0F, 1.0F);
-  constexpr float rounding = 1e-5F;
+  constexpr float rounding = 1e-5F;  // of colours that files give with six digits
   if ((out - color).length() > rounding) {
     notes_.push_back({m.place, m.name, "approximated",
                       fmt::format("{} ({:.4g} {:.4g} {:.4g}) is clamped to 0 to 1", what, color.x,

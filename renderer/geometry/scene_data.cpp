@@ -1,8 +1,5 @@
 #include "renderer/geometry/scene_data.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace lacuna {
 
 bool LacunaMaterial::part_chooses() const {
@@ -34,18 +31,13 @@ std::size_t triangles_of(std::span<const Mesh> meshes) {
 }  // namespace
 
 Bounds bounds_of(std::span<const Mesh> meshes) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  V3f low(infinity), high(-infinity);
+  Bounds box;
   for (const Mesh& mesh : meshes) {
     for (const auto& triangle : mesh.triangles) {
-      for (const auto i : triangle) {
-        const V3f& p = mesh.positions[i];
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
+      for (const auto i : triangle) box.add(mesh.positions[i]);
     }
   }
-  return {V3d(low), V3d(high)};
+  return box;
 }
 
 void SceneData::bound_ray_errors() {

@@ -148,6 +148,13 @@ def lacuna(bench, *arguments):
                           env={**os.environ, "LACUNA_DATA": str(bench.folder / "data")}).stdout
 
 
+def foreign_cell(name, depth, runs, told):
+    """The pictures of some runs of cycles(), as an integrator of a sweep; `told`: what it says of each."""
+    return {"type": "foreign", "name": name, "max_depth": depth, "pictures": [
+        {"file": pathlib.Path(r["file"]).name, "seed": r["seed"], "seconds": t["cpu_seconds"] / THREADS,
+         "cpu_seconds": t["cpu_seconds"] / THREADS} for r, t in zip(runs, told)]}
+
+
 def theirs(bench, job, scene, seconds):
     """Cycles as integrators of a sweep, its million samples a CPU second, and what it says of itself."""
     runs = [{"seed": seed, "roulette": roulette, "cpu_seconds": seconds, "file": str(bench.folder / f"{method}-{seed}.exr")}
@@ -157,11 +164,10 @@ def theirs(bench, job, scene, seconds):
     cells, rates = [], {}
     for i, method in enumerate(CYCLES):
         of_method = slice(i * len(SEEDS), (i + 1) * len(SEEDS))
-        times = [t["cpu_seconds"] for t in told["runs"][of_method]]
-        cells.append({"type": "foreign", "name": method, "max_depth": DEPTH, "pictures": [
-            {"file": pathlib.Path(r["file"]).name, "seed": r["seed"], "seconds": s / THREADS, "cpu_seconds": s / THREADS}
-            for r, s in zip(runs[of_method], times)]})
-        rates[method] = sum(t["samples"] for t in told["runs"][of_method]) * math.prod(job["resolution"]) / sum(times) / 1e6
+        of_runs = told["runs"][of_method]
+        cells.append(foreign_cell(method, DEPTH, runs[of_method], of_runs))
+        times = sum(t["cpu_seconds"] for t in of_runs)
+        rates[method] = sum(t["samples"] for t in of_runs) * math.prod(job["resolution"]) / times / 1e6
     return cells, rates, told
 
 

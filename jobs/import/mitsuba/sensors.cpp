@@ -178,7 +178,7 @@ void add_default_sensor(ReadContext& context, const SceneElement& root, Imported
   }
   if (bounds.empty()) return;
   const V3d centre = (bounds.low + bounds.high) / 2, size = bounds.size();
-  constexpr double fov = 45 * degree;
+  constexpr double fov = 45 * degree;  // along x, as of Mitsuba 3's default sensor
   const double extent = std::max({size.x, size.y, size.z});
   ImportedCamera camera;
   camera.name = "camera";

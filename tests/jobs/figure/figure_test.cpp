@@ -314,6 +314,19 @@ TEST_F(Figures, ShowPicturesWithoutTheirTime) {
   }));
 }
 
+// Its name stays the program's where nothing but its pictures differs.
+TEST_F(Figures, NameAnotherProgramInEachOfItsCells) {
+  const SweepFolder sweep = SweepFolder::create(temp.path() / "b.sweep", parse_sweep(R"({"job":
+    {"scene": "door.glb", "reference": "r.exr", "resolution": [64, 48], "budget": {"iterations": 80}},
+    "axes": {"/integrator": [
+      {"type": "foreign", "name": "Cycles", "pictures": [{"file": "o.exr", "seconds": 4}]},
+      {"type": "foreign", "name": "Cycles", "pictures": [{"file": "p.exr", "seconds": 4}]}]}})"));
+  for (const SweepRun& run : sweep.plan().runs) finish(sweep, run, temp.path() / "r.exr");
+  const FigureSpec spec = suggest_figure(temp.path() / "b.sweep", "b.sweep");
+  ASSERT_EQ(spec.methods.size(), 2u);
+  for (const FigureMethod& method : spec.methods) EXPECT_EQ(method.name, "Cycles");
+}
+
 TEST_F(Figures, WithoutWhatTheyNameAreRefused) {
   expect_problem("a.sweep", "b.sweep", "/sweep", "found \"b.sweep\"");
   expect_problem("[40, 30, 16, 12]", "[50, 30, 16, 12]", "/scenes/0/crops/1",
