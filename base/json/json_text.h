@@ -26,5 +26,9 @@ std::string document_text(const OrderedJson& json);
 /// Parses JSON that the project itself has written. Throws std::logic_error for anything else;
 /// input from outside is parsed by parse_document().
 OrderedJson parse_own(std::string_view text);
+/// parse_own() with keys in alphabetical order.
+Json parse_own_sorted(std::string_view text);
+
+bool is_utf8(std::string_view text);
 
 }  // namespace lacuna

@@ -129,7 +129,7 @@ class Suggestion {
         if (is_common(item.key())) common.push_back(item.key());
       }
       for (const std::string& key : common) object.erase(key);
-      value.text = object.dump();
+      value.text = json_text(object);
     }
     return own;
   }

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/json/json_text.h"
 #include "base/storage/atomic_file.h"
 #include "base/storage/passing_error.h"
 #include "jobs/run/checkpoint.h"
@@ -62,7 +63,7 @@ class Reader {
                     fmt::format("shard {} of {} is {}, not done{}; `lacuna render` continues it",
                                 number, shard.spec.shards, enum_name(state.state), reason));
     }
-    const auto report = nlohmann::json::parse(read_file(folder.file("report.json"), 1 << 24));
+    const auto report = parse_own(read_file(folder.file("report.json"), 1 << 24));
     shard.iterations = report.at("counts").at("iterations").get<std::uint64_t>();
     shard.processor = report.at("machine").at("processor").get<std::string>();
     const CheckpointKey key = read_checkpoint_key(folder.file("checkpoint.bin"));

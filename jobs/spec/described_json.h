@@ -38,4 +38,8 @@ std::string write_document(const T& settings) {
   return document_text(ObjectWriter::value_of(settings));
 }
 
+// In job_json.cpp: all settings take part in it.
+struct JobSpec;
+extern template OrderedJson ObjectWriter::value_of(const JobSpec& job);
+
 }  // namespace lacuna

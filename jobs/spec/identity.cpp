@@ -12,4 +12,8 @@ std::string hash_without(OrderedJson job, KeyList left_out) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+template std::string picture_key(const JobSpec& job);
+template std::string preparation_key(const JobSpec& job);
+template JobSpec without(const JobSpec& job, KeyList left_out);
+
 }  // namespace lacuna

@@ -8,9 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "jobs/spec/described_json.h"
 #include "jobs/spec/job_spec.h"
-#include "jobs/spec/json_reader.h"
-#include "jobs/spec/json_writer.h"
 
 namespace lacuna {
 
@@ -109,5 +108,10 @@ T without(const T& settings, KeyList left_out) {
   if (!problems.empty()) throw BadJob(std::move(problems));
   return rest;
 }
+
+// In identity.cpp: all settings take part in them.
+extern template std::string picture_key(const JobSpec& job);
+extern template std::string preparation_key(const JobSpec& job);
+extern template JobSpec without(const JobSpec& job, KeyList left_out);
 
 }  // namespace lacuna

@@ -262,6 +262,8 @@ JobSpec parse_job(std::string_view json) {
   return spec;
 }
 
+template OrderedJson ObjectWriter::value_of(const JobSpec& job);
+
 std::string write_job(const JobSpec& spec) { return write_document(spec); }
 
 }  // namespace lacuna

@@ -82,7 +82,7 @@ std::string any_value(const Json& value) {
 }
 
 void check_retired(const JsonCursor& found, const RetiredKey& key) {
-  if (found.value() == Json::parse(key.only)) return;
+  if (found.value() == parse_own_sorted(key.only)) return;
   found.add_problem(
       fmt::format("found {}, a setting of an earlier version: {}; allowed: {}, or no such key",
                   shown(found.value()), key.now, key.only));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/json/json_cursor.h"
+#include "base/json/json_text.h"
 #include "base/settings/auto_number.h"
 #include "base/settings/retired_key.h"
 #include "jobs/spec/described.h"
@@ -105,7 +106,7 @@ class ObjectReader {
   template <class T>
   void read_published(T& member, const Field& field) const {
     if (!field.published.empty()) {
-      const Json value = Json::parse(field.published);
+      const Json value = parse_own_sorted(field.published);
       read_value(object_.in_place(value), member, field);
     } else if constexpr (is_variant<T>) {
       std::visit([&](auto& s) { read_published_members(s); }, member);

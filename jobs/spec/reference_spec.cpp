@@ -19,4 +19,7 @@ JobIntegrator reference_integrator(const JobIntegrator& integrator) {
   return std::visit(ReferenceIntegrator{}, integrator);
 }
 
+template JobSpec reference_spec(const JobSpec& job);
+template std::string picture_name(const JobSpec& job);
+
 }  // namespace lacuna

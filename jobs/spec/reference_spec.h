@@ -52,4 +52,7 @@ std::string picture_name(const Job& job) {
   return hash_without(ObjectWriter::value_of(job), not_in_a_reference);
 }
 
+extern template JobSpec reference_spec(const JobSpec& job);
+extern template std::string picture_name(const JobSpec& job);
+
 }  // namespace lacuna

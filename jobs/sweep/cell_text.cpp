@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/json/json_text.h"
 #include "jobs/sweep/expand.h"
 #include "jobs/sweep/pointer.h"
 
@@ -60,7 +61,7 @@ namespace {
 /// brackets, another program by its name.
 std::string value_text(const OrderedJson& v) {
   if (v.is_string()) return v.get<std::string>();
-  if (!v.is_object()) return v.dump();
+  if (!v.is_object()) return json_text(v);
   const auto text_of = [&v](const char* key) {
     const auto found = v.find(key);
     return found != v.end() && found->is_string() ? found->get<std::string>() : "";

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <nlohmann/json.hpp>
 
+#include "base/json/json_text.h"
 #include "server/http/message.h"
 
 namespace lacuna {
@@ -19,11 +19,7 @@ bool is_plain_text(const std::string& text) {
     const bool of_two_bytes = byte(i) == 0xc2 && byte(i + 1) < 0xa0;
     if (byte(i) < 0x20 || byte(i) == 0x7f || of_two_bytes) return false;
   }
-  try {
-    return !nlohmann::json(text).dump().empty();
-  } catch (const nlohmann::json::type_error&) {  // not UTF-8
-    return false;
-  }
+  return is_utf8(text);
 }
 
 std::string decoded(std::string_view sent) {

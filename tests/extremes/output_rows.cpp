@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/json/json_text.h"
 #include "renderer/images/image_read.h"
 #include "tests/extremes/rows.h"
 
@@ -15,7 +16,7 @@ constexpr double largest_half = 65504;
 
 /// image.exr of a job that is done; all finite, nothing rejected.
 std::vector<double> done_image(const JobFolder& folder, Check& check) {
-  const auto report = Json::parse(content_of(folder.file("report.json")));
+  const auto report = parse_own_sorted(content_of(folder.file("report.json")));
   check.require(report.at("counts").at("rejected") == 0, "samples were rejected");
   const FloatImage image = read_float_image(folder.file("image.exr"));
   std::vector<double> rgb(image.rgb.begin(), image.rgb.end());

@@ -7,7 +7,6 @@
 namespace lacuna::extremes {
 
 using test::Bytes;
-using test::Json;
 
 /// What is added to a room without changing its picture.
 enum class Clutter { none, zero_area, duplicated_vertices, coincident, needles };

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json/json_text.h"
 #include "server/http/http.h"
 #include "tests/server/loopback.h"
 
@@ -61,7 +62,7 @@ TEST(Router, DescribesItself) {
   ASSERT_EQ(get["parameters"].size(), 3U);
   EXPECT_EQ(get["parameters"][0]["name"], "limit");
   EXPECT_EQ(get["parameters"][0]["schema"],
-            nlohmann::ordered_json::parse(R"({"type":"integer","minimum":1,"maximum":1000})"));
+            parse_own(R"({"type":"integer","minimum":1,"maximum":1000})"));
   EXPECT_EQ(get["responses"]["200"]["description"], "The list.");
   EXPECT_TRUE(get["responses"]["400"]["content"].contains("application/problem+json"));
   EXPECT_FALSE(get.contains("requestBody"));

@@ -1,4 +1,5 @@
 #include "base/json/json_cursor.h"
+#include "base/json/json_text.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ struct Document {
   Noted noted = {};
   JsonCursor root{json, "", noted};
 
-  explicit Document(std::string_view text) : json(Json::parse(text)) {}
+  explicit Document(std::string_view text) : json(parse_own_sorted(text)) {}
   JsonCursor at(std::string_view key) const { return root.at(key); }
   /// The one problem since the last call.
   std::string problem() {

@@ -1,4 +1,5 @@
 #include "jobs/run/artefacts_json.h"
+#include "base/json/json_text.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ TEST(ArtefactsJson, TellsWhatBecameOfEachRequest) {
       {"portals", Origin::not_needed, 0, 0, 0, std::nullopt, ""},
       {"domain", Origin::loaded, 0.25, 0.5, 10, 40, ""},
       {"opening", Origin::built, 2, 0, 0, std::nullopt, "it is not cached: the disk is full"}};
-  EXPECT_EQ(artefacts_json(records), nlohmann::ordered_json::parse(R"({
+  EXPECT_EQ(artefacts_json(records), parse_own(R"({
     "built": [
       {"name": "skeleton", "seconds": 1.5, "disk_bytes": 100, "memory_bytes": 400},
       {"name": "opening", "seconds": 2.0, "disk_bytes": 0, "remark": "it is not cached: the disk is full"}
@@ -28,7 +29,7 @@ TEST(ArtefactsJson, TellsWhatBecameOfEachRequest) {
 }
 
 TEST(ArtefactsJson, HasItsListsWhereNothingWasAsked) {
-  EXPECT_EQ(artefacts_json({}).dump(), R"({"built":[],"loaded":[],"left_out":[]})");
+  EXPECT_EQ(json_text(artefacts_json({})), R"({"built":[],"loaded":[],"left_out":[]})");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "jobs/run/foreign_job.h"
+#include "base/json/json_text.h"
 
 #include "jobs/run/foreign_program.h"
 #include "jobs/spec/job_json.h"
@@ -159,7 +160,7 @@ TEST_F(ForeignJob, PicturesOfAnInterruptedCommandStay) {
   const auto second = [&] { return std::filesystem::exists(folder.file("picture-2.exr")); };
   EXPECT_EQ(run_job(folder, context(second)), Outcome::interrupted);
   EXPECT_EQ(folder.read_state().state, State::interrupted);
-  const json record = json::parse(read_file(folder.file("measured.json"), 1 << 20));
+  const json record = parse_own_sorted(read_file(folder.file("measured.json"), 1 << 20));
   EXPECT_EQ(record["pictures"].size(), 1u);
   // They belong to the files from which they were made.
   picture("truth.exr", 2);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/space/memory_limit.h"
+#include "base/json/json_text.h"
 #include "base/storage/atomic_file.h"
 #include "jobs/run/results.h"
 #include "renderer/core/rng.h"
@@ -135,7 +136,7 @@ TEST_F(Layers, AreMeansInImageExrAndForThePageByTheirNames) {
       EXPECT_NEAR(double(found[v]), expected[v], 1e-6 * std::abs(expected[v])) << all_names[k];
     }
   }
-  const auto index = nlohmann::json::parse(read_file(folder.file("layers.json"), 1 << 20));
+  const auto index = parse_own_sorted(read_file(folder.file("layers.json"), 1 << 20));
   std::vector<std::string> names;
   for (const auto& l : index.at("layers")) {
     names.push_back(l.at("name"));

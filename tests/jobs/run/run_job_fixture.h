@@ -5,6 +5,7 @@
 #include <atomic>
 #include <nlohmann/json.hpp>
 
+#include "base/json/json_text.h"
 #include "base/storage/atomic_file.h"
 #include "jobs/run/run_job.h"
 #include "renderer/images/image_read.h"
@@ -48,7 +49,7 @@ class RunJob : public testing::Test {
     return s;
   }
   static json report(const JobFolder& folder) {
-    return json::parse(read_file(folder.file("report.json"), 1 << 20));
+    return parse_own_sorted(read_file(folder.file("report.json"), 1 << 20));
   }
   static std::vector<float> pixels(const JobFolder& folder, const std::string& layer = "") {
     return read_float_image(folder.file("image.exr"), layer).rgb;

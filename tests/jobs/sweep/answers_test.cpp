@@ -1,4 +1,5 @@
 #include "jobs/sweep/answers.h"
+#include "base/json/json_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -183,7 +184,7 @@ TEST_F(SweepAnswers, BiasIsWhatVarianceAndReferenceLeave) {
 TEST_F(SweepAnswers, TheFloorIsNotSupported) {
   const SweepFolder sweep =
       finish_all(make(two_depths), {{16}, {4, FakeRun{}.report, true}, {16}, {4}});
-  const auto json = nlohmann::json::parse(answers_text(sweep, answer(sweep)));
+  const auto json = parse_own_sorted(answers_text(sweep, answer(sweep)));
   EXPECT_EQ(json["cells"][1]["at"][0]["supported"], true);
   EXPECT_EQ(json["cells"][1]["curve"].back()[4], 1);
   EXPECT_EQ(json["pictures"][0]["front"]["render"][0]["supported"], false);

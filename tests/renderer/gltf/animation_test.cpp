@@ -14,7 +14,6 @@ namespace {
 using test::component_float;
 using test::component_s16;
 using test::GlbBuilder;
-using test::Json;
 
 SceneData load_at(const GlbBuilder& builder, const SceneChoice& time) {
   const TemporaryFolder folder;

@@ -13,7 +13,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 using Colour = std::array<std::uint8_t, 4>;
 
 /// A wavy sheet over the unit square, and a colour for each of its vertices.

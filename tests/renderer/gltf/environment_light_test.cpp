@@ -16,7 +16,6 @@ namespace {
 
 using test::Bytes;
 using test::GlbBuilder;
-using test::Json;
 using test::load;
 
 using Faces = std::array<Bytes, 6>;  // RGBA, 4 x side x side bytes each

@@ -20,7 +20,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 using test::load;
 
 /// A quad in the plane z = 0 from 0 to 1, facing +z, whose texture is upright; `map` is its normal.

@@ -12,7 +12,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 using test::load;
 
 V3f geometric_normal(const Mesh& mesh, std::size_t triangle = 0) {

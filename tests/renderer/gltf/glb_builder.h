@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json/json_text.h"
 #include "renderer/core/vec.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_load.h"
@@ -18,7 +19,6 @@
 
 namespace lacuna::test {
 
-using Json = nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -30,7 +30,7 @@ inline constexpr int component_s8 = 5120, component_u8 = 5121, component_s16 = 5
 /// `bin` may be changed at will before glb() or gltf().
 class GlbBuilder {
  public:
-  Json json = Json::parse(
+  Json json = parse_own_sorted(
       R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": []})");
   Bytes bin;
 
@@ -115,10 +115,10 @@ class GlbBuilder {
     return append("textures", texture);
   }
 
-  Bytes glb() const { return frame(with_buffer(nullptr).dump(), bin); }
+  Bytes glb() const { return frame(json_text(with_buffer(nullptr)), bin); }
 
   /// The JSON alone, with the buffer under `uri`.
-  std::string gltf(const std::string& uri) const { return with_buffer(uri).dump(); }
+  std::string gltf(const std::string& uri) const { return json_text(with_buffer(uri)); }
 
   /// See frame_glb().
   static Bytes frame(std::string json_text, Bytes bin_chunk) {

@@ -138,7 +138,7 @@ TEST(HostileFiles, AnImageThatNobodyUsesIsNotOpened) {
   const TemporaryFolder folder;
   GlbBuilder builder = textured_scene({1, 2, 3, 4});
   builder.json["images"][0] = {{"uri", "wood.png"}};
-  builder.json["materials"][0] = test::Json::object();
+  builder.json["materials"][0] = Json::object();
   EXPECT_TRUE(load_gltf(folder.write("scene.glb", builder.glb())).textures.empty());
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "base/json/json_text.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_guard.h"
 #include "renderer/gltf/gltf_load.h"
@@ -134,7 +135,7 @@ TEST(Framing, DuplicateKeysCannotSlipPastTheGuard) {
     GlbBuilder b = builder;
     b.json["accessors"][0]["count"] = "COUNTS";
     b.json["buffers"] = {{{"byteLength", b.bin.size()}}};
-    std::string json = b.json.dump();
+    std::string json = json_text(b.json);
     const std::string mark = "\"count\":\"COUNTS\"";
     json.replace(json.find(mark), mark.size(), counts);
     return folder.write("scene.glb", GlbBuilder::frame(json, b.bin));
@@ -146,8 +147,8 @@ TEST(Framing, DuplicateKeysCannotSlipPastTheGuard) {
 TEST(Framing, SixtyLevelsAreFine) {
   const TemporaryFolder folder;
   auto builder = test::triangle_scene();
-  test::Json deep = 1;
-  for (int i = 0; i < 60; ++i) deep = test::Json::array({deep});
+  Json deep = 1;
+  for (int i = 0; i < 60; ++i) deep = Json::array({deep});
   builder.json["extras"] = deep;
   EXPECT_EQ(load_gltf(folder.write("scene.glb", builder.glb())).triangle_count(), 1U);
 }

@@ -11,7 +11,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 
 /// One thing wrong with an otherwise good scene: a triangle with a material, a camera and a light.
 struct HostileCase {

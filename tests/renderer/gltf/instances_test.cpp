@@ -12,7 +12,6 @@ namespace {
 
 using test::component_float;
 using test::GlbBuilder;
-using test::Json;
 using test::Triangles;
 
 /// A comb of `teeth` triangles from (0, 0, 0) along x, of normal +z.

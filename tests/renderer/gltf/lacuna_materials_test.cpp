@@ -10,7 +10,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 using test::load;
 
 Json with_lacuna(const Json& extension) {

@@ -11,7 +11,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 using test::load;
 
 /// A quad with uvs and the given material, and two textures to choose from.

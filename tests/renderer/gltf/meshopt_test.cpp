@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/json/json_text.h"
 #include "renderer/geometry/scene_data.h"
 #include "tests/renderer/gltf/expect_near.h"
 #include "tests/renderer/gltf/glb_builder.h"
@@ -11,7 +12,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 
 /// What a bufferView holds, and its compressed form.
 struct Packed {
@@ -114,7 +114,7 @@ TEST(Meshopt, FilesWithExternalBuffers) {
   Json json = b.json;
   json["buffers"][0]["uri"] = "data.bin";
   json["buffers"][1]["uri"] = "missing.bin";
-  EXPECT_EQ(load_gltf(folder.write("scene.gltf", json.dump())).meshes.at(0).positions, corners)
+  EXPECT_EQ(load_gltf(folder.write("scene.gltf", json_text(json))).meshes.at(0).positions, corners)
       << "a fallback is not read";
 }
 

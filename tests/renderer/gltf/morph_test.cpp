@@ -11,7 +11,6 @@ namespace {
 
 using test::component_float;
 using test::GlbBuilder;
-using test::Json;
 
 /// The triangle (0, 0, 0), (1, 0, 0), (0, 1, 0) with normals +z and two targets: along x, and along
 /// z with the normals bent to +y.

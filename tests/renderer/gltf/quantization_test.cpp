@@ -9,7 +9,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 
 /// Adds four integers for each vertex, of which the attribute has `per_vertex`: attributes have a
 /// byteStride that is a multiple of 4.

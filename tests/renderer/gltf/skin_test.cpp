@@ -14,7 +14,6 @@ using test::component_float;
 using test::component_u16;
 using test::component_u8;
 using test::GlbBuilder;
-using test::Json;
 
 using Joints = std::array<std::uint8_t, 4>;
 using Weights = std::array<float, 4>;

@@ -7,7 +7,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 
 /// The triangle's accessor 0 with some of its positions replaced.
 template <class Index>

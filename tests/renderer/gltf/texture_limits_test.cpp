@@ -13,8 +13,8 @@ namespace {
 test::GlbBuilder textured(const std::vector<test::Bytes>& images, int ways) {
   test::GlbBuilder builder;
   for (const test::Bytes& image : images) {
-    const test::Json texture{{"index", builder.add_texture(image)}};
-    test::Json material;
+    const Json texture{{"index", builder.add_texture(image)}};
+    Json material;
     material["pbrMetallicRoughness"]["baseColorTexture"] = texture;
     if (ways > 1) material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = texture;
     const auto index = static_cast<int>(builder.add_material(material));

@@ -12,7 +12,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 using test::load;
 
 std::string warnings_of(const SceneData& scene) {

@@ -6,7 +6,6 @@ namespace lacuna {
 namespace {
 
 using test::GlbBuilder;
-using test::Json;
 
 /// A triangle, and below a node another one, a light and a camera.
 SceneData with_visibility(const Json& upper, const Json& lower) {

@@ -56,7 +56,7 @@ std::vector<V3f> places_from(const Scene& scene, const V3f& eye) {
 
 const ThreadPool pool(2);
 
-NodeMaps maps_of(const Scene& scene, const std::vector<V3f>& places, int size) {
+NodeMaps node_maps_of(const Scene& scene, const std::vector<V3f>& places, int size) {
   return trace_node_maps(scene, places, size, pool, no_memory_limit);
 }
 
@@ -67,7 +67,7 @@ TEST(NodeMaps, OfAnEmptyRoomSeeAllOfIt) {
   parts.eye({0, 0, 0}, {0, 0, -1}, 1);
   const Scene scene = scene_of(std::move(parts.data));
   const V3f place(0.1F, -0.2F, 0.3F);
-  const NodeMaps maps = maps_of(scene, {place}, 64);
+  const NodeMaps maps = node_maps_of(scene, {place}, 64);
   for (const int filter : {1, 2, 5, 7}) {
     const NodeView view(maps, 0, place, filter);
     Moments whole;
@@ -90,7 +90,7 @@ TEST_P(NodeMapsIn, SeeWhatRaysSee) {
   const V3f eye(data.cameras.front().to_world.translation());
   const Scene scene = scene_of(test::load({GetParam()}));
   const std::vector<V3f> places = places_from(scene, eye);
-  const NodeMaps maps = maps_of(scene, places, 128);
+  const NodeMaps maps = node_maps_of(scene, places, 128);
   ASSERT_EQ(maps.points(), places.size());
   int seen = 0, unseen = 0;
   Moments wrong;  // shares of the points around one place: those of one place are not independent
@@ -120,7 +120,7 @@ TEST(NodeMaps, SeePointsAndTheSkyAsRaysDo) {
   const V3f eye(data.cameras.front().to_world.translation());
   const Scene scene = scene_of(test::load({"atrium"}));
   const std::vector<V3f> places = places_from(scene, eye);
-  const NodeMaps maps = maps_of(scene, places, 128);
+  const NodeMaps maps = node_maps_of(scene, places, 128);
   Rng rng(8, 0, 0, Rng::Purpose::test);
   int clear = 0, hidden = 0;
   Moments wrong_points, wrong_directions;  // shares of each place
@@ -157,9 +157,9 @@ TEST(NodeMaps, ScaleWithTheScene) {
     return scene_of(std::move(parts.data));
   };
   const V3f place(-0.3F, 0.1F, -0.2F);
-  const NodeMaps expected = maps_of(room(1), {place}, 32);
+  const NodeMaps expected = node_maps_of(room(1), {place}, 32);
   for (const float scale : {0x1p-20F, 0x1p30F}) {
-    EXPECT_EQ(maps_of(room(scale), {place * scale}, 32).texels, expected.texels) << scale;
+    EXPECT_EQ(node_maps_of(room(scale), {place * scale}, 32).texels, expected.texels) << scale;
   }
 }
 
@@ -188,7 +188,7 @@ NodeMaps trip(const NodeMaps& maps, std::optional<EntryRefusal>& refusal) {
 
 TEST(NodeMaps, ComeBackFromDisk) {
   const Scene scene = scene_of(test::load({"cornell"}));
-  const NodeMaps maps = maps_of(scene, {V3f(0.1F), V3f(0.2F)}, 8);
+  const NodeMaps maps = node_maps_of(scene, {V3f(0.1F), V3f(0.2F)}, 8);
   std::optional<EntryRefusal> refusal;
   const NodeMaps read = trip(maps, refusal);
   EXPECT_FALSE(refusal);

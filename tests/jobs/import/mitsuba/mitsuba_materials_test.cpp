@@ -135,7 +135,7 @@ Json exact_of(const std::string& bsdf) {
   const std::string glb = content_of(folder / "s/scene.glb");
   constexpr std::size_t json_at = 20;
   const auto length = *reinterpret_cast<const std::uint32_t*>(glb.data() + 12);
-  const Json json = Json::parse(glb.substr(json_at, length));
+  const Json json = parse_own_sorted(glb.substr(json_at, length));
   const Json& mesh = json["meshes"][0]["primitives"][0];
   return json["materials"][mesh["material"].get<std::size_t>()].value("extensions", Json::object());
 }
