@@ -8,6 +8,10 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "docs/measured"))
+
+import measured  # noqa: E402
+
 LACUNA = pathlib.Path(os.environ.get("LACUNA_BIN", ROOT / "build/release/bin")) / "lacuna"
 PAGES = sorted({ROOT / "README.md", *(ROOT / "docs").glob("**/*.md"), *ROOT.glob("*/README.md"), *ROOT.glob("jobs/*/README.md")})
 CODE = re.compile(r"`[^`\n]*`|^    .*$", re.MULTILINE)
@@ -53,6 +57,14 @@ class Docs(unittest.TestCase):
 
     def test_pictures_are_small(self):
         self.assertLess(sum(file.stat().st_size for file in (ROOT / "docs/pictures").iterdir()), 1_500_000)
+
+    def test_measured_tables_stand_on_their_pages(self):
+        known = {(str(page.relative_to(ROOT)), name) for page in PAGES for name in measured.marks(page)}
+        self.assertEqual(known, {(table.page, name) for name, table in measured.TABLES.items()})
+        for name, table in measured.TABLES.items():
+            self.assertGreater(len(measured.marks(table.page)[name][4].splitlines()), 2, f"{table.page}: no table below {name}")
+            if measured.is_stale(name):
+                print(f"{table.page}: the code of {name} has changed since it was measured: ./dev docs --measure {name}")
 
     @unittest.skipUnless(LACUNA.exists(), "lacuna is not built")
     def test_tables_are_those_that_lacuna_prints(self):

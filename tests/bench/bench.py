@@ -32,6 +32,12 @@ class Bench:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="lacuna-bench-"))
         os.environ["LACUNA_SCENES"] += f":{self.folder}"  # checks make scenes of their own
 
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder, ignore_errors=True)
+
     def figure(self, name, value, bound, good):
         self.missed += not good
         print(f"{name:<64} {value:>12}   {'ok' if good else 'MISSED'}: {bound}", flush=True)
@@ -281,12 +287,9 @@ def main():
     if not SHARED.is_dir():
         print(f"bench: the real scenes are not there ({SHARED}); nothing to measure", file=sys.stderr)
         return 1
-    bench = Bench()
-    try:
+    with Bench() as bench:
         for name in options.checks or CHECKS:
             known[name](bench, options)
-    finally:
-        shutil.rmtree(bench.folder, ignore_errors=True)
     print(f"{bench.missed} figures missed")
     return 1 if bench.missed else 0
 

@@ -126,23 +126,29 @@ def measure_all(bench, binaries, folder, options):
                 judge(bench, regrets, seconds)
 
 
+def best_of(errors):
+    """The least error of the fixed methods; None where none is known."""
+    return min((e for m, e in errors.items() if m != "auto" and e), default=None)
+
+
+def rows(found, seconds, metric):
+    """The errors of each scene over the best fixed method's, as rows of Markdown."""
+    for scene, (errors, chosen) in found.items():
+        of = errors[seconds, metric]
+        if best := best_of(of):
+            cells = ["?" if of[m] is None else "**1**" if of[m] == best else f"{of[m] / best:.2g}" for m in (*METHODS, "auto")]
+            yield f"| {scene} | {' | '.join(cells)} | {'; '.join(sorted(chosen[seconds]))} |"
+
+
 def table(found, seconds, metric, seeds):
     """Prints the errors over the best fixed method's. Returns {scene: regret}."""
     print(f"\n{metric} over the best fixed method's, {seconds:g} CPU seconds a thread, {seeds} seeds\n")
     names = [*METHODS, "auto"]
     print("| scene |", " | ".join(f"`{m}`" for m in names), "| chosen |")
     print("| --- |" + " --- |" * (len(names) + 1))
-    regrets = {}
-    for scene, (errors, chosen) in found.items():
-        of = errors[seconds, metric]
-        best = min((e for m, e in of.items() if m != "auto" and e), default=None)
-        if best is None:
-            continue
-        cells = ["?" if of[m] is None else "**1**" if of[m] == best else f"{of[m] / best:.2g}" for m in names]
-        print(f"| {scene} |", " | ".join(cells), "|", "; ".join(sorted(chosen[seconds])), "|")
-        if of["auto"]:
-            regrets[scene] = of["auto"] / best
-    return regrets
+    print(*rows(found, seconds, metric), sep="\n")
+    known = {scene: errors[seconds, metric] for scene, (errors, _) in found.items()}
+    return {scene: of["auto"] / best for scene, of in known.items() if (best := best_of(of)) and of["auto"]}
 
 
 def judge(bench, regrets, seconds):

@@ -1,18 +1,13 @@
-"""The table "which method for which scene" as Markdown, from finished sweeps:
-
-    python3 docs/method_table.py which-method.sweep which-method-real.sweep
-
-Each cell: relMSE of the method at the end of the runs over the relMSE of `path` in the same scene.
-"""
+"""The table of docs/methods/README.md, from two sweeps: relMSE of each method at the end of the runs over that of `path` in the
+same scene."""
 
 import json
-import os
 import pathlib
 import subprocess
-import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-LACUNA = pathlib.Path(os.environ.get("LACUNA_BIN", HERE.parent / "build/release/bin")) / "lacuna"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LACUNA = ROOT / "build/release/bin/lacuna"
+SWEEPS = ("which-method", "which-method-real")
 SCENES = {
     "ajar": "a door 12 degrees ajar", "bends": "a corridor with two bends", "cornell": "direct light from a panel",
     "atrium": "sun into one side of a court", "many_lights": "200 emitters among pillars",
@@ -41,18 +36,17 @@ def rows(sweep):
     return found
 
 
-def main():
-    print("| scene | relMSE of `path` |", " | ".join(f"`{name.replace(' ', '`, `')}`" for name in METHODS[1:]), "|")
-    print("| --- |" + " --- |" * len(METHODS))
-    for sweep in sys.argv[1:]:
+def lines(folder):
+    out = ["| scene | relMSE of `path` | " + " | ".join(f"`{name.replace(' ', '`, `')}`" for name in METHODS[1:]) + " |",
+           "| --- |" + " --- |" * len(METHODS)]
+    for name in SWEEPS:
+        sweep = folder / f"{name}.sweep"
+        subprocess.run([LACUNA, "sweep", ROOT / f"jobs/examples/sweeps/{name}.json", "--out", sweep], check=True)
         for scene, errors in rows(sweep).items():
             base = errors["path"][0]
             shown = {name: ("" if supported else "< ") + f"{value / base:.2g}"
                      for name, (value, supported, _) in errors.items()}
             best = min(errors, key=lambda name: errors[name][0])
             shown[best] = f"**{shown[best]}**"
-            print(f"| `{scene}`: {SCENES[scene]} | {base:.2g} |", " | ".join(shown.get(name, "") for name in METHODS[1:]), "|")
-
-
-if __name__ == "__main__":
-    main()
+            out.append(f"| `{scene}`: {SCENES[scene]} | {base:.2g} | " + " | ".join(shown.get(name, "") for name in METHODS[1:]) + " |")
+    return out

@@ -1,0 +1,3 @@
+import measured
+
+measured.main()
