@@ -4,8 +4,9 @@ import bench
 import regret
 
 SECONDS, SEEDS = 10, 2
-NAMES = {"path, reuse 16": "`path`, `reuse` 16", "path, learned_skeleton, reuse 64": "`path`, `reuse` 64, guide `learned_skeleton`",
-         "metropolis": "`metropolis`", "bdpt, skeleton": "`bdpt`, `skeleton`", "many_lights": "`many_lights`", "auto": "`auto`"}
+NAMES = {"path, reuse 16": "`path`, `reuse` 16",
+         "path, learned_skeleton, reuse 64": "`path`, `reuse` 64, guide `learned_skeleton`", "metropolis": "`metropolis`",
+         "bdpt, skeleton": "`bdpt`, `skeleton`", "many_lights": "`many_lights`", "auto": "`auto`"}
 
 
 def lines(folder):

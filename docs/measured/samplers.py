@@ -7,6 +7,10 @@ NAMES = {"path, direct light": "`path`, direct light", "path": "`path`, 6 edges"
          "bdpt, skeleton": "`bdpt` `skeleton`, 6 edges", "light": "`light`, 6 edges"}
 
 
+def shown(ratio):
+    return f"{ratio:.0f}" if ratio >= 10 else f"{ratio:.2g}"
+
+
 def lines(_):
     gains = {}
     with bench.Bench() as renderer:
@@ -15,4 +19,4 @@ def lines(_):
             print(f"{method}, {scene}: {ratio:.2f}", flush=True)
     scenes = list(next(iter(gains.values())))
     return [f"| | {' | '.join(scenes)} |", "| --- |" + " --- |" * len(scenes),
-            *(f"| {NAMES[method]} | {' | '.join(f'{of[scene]:.2g}' for scene in scenes)} |" for method, of in gains.items())]
+            *(f"| {NAMES[method]} | {' | '.join(f'{shown(of[scene])}' for scene in scenes)} |" for method, of in gains.items())]

@@ -48,5 +48,6 @@ def lines(folder):
                      for name, (value, supported, _) in errors.items()}
             best = min(errors, key=lambda name: errors[name][0])
             shown[best] = f"**{shown[best]}**"
-            out.append(f"| `{scene}`: {SCENES[scene]} | {base:.2g} | " + " | ".join(shown.get(name, "") for name in METHODS[1:]) + " |")
+            cells = " | ".join(shown.get(name, "") for name in METHODS[1:])
+            out.append(f"| `{scene}`: {SCENES[scene]} | {base:.2g} | {cells} |")
     return out
