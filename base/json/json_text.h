@@ -29,6 +29,7 @@ OrderedJson parse_own(std::string_view text);
 /// parse_own() with keys in alphabetical order.
 Json parse_own_sorted(std::string_view text);
 
+/// Whether `text` is well-formed UTF-8.
 bool is_utf8(std::string_view text);
 
 }  // namespace lacuna

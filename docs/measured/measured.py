@@ -12,7 +12,7 @@ import re
 import shutil
 import sys
 import types
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 for folder in ("jobs/reproduce", "tests/bench"):
@@ -28,20 +28,19 @@ MARK = re.compile(r"<!-- \./dev docs --measure ([a-z-]+): commit ([^,\n]+), code
 
 class Table(NamedTuple):
     page: str  # from the top of the tree
-    integrators: str  # that take part
     minutes: int  # on two cores
-    lines: Callable[[pathlib.Path], list[str]]  # measures the table, with a folder for what it renders
+    module: types.ModuleType  # lines(folder) renders into a folder and returns the table; INTEGRATORS take part
 
 
 TABLES = {
-    "regret": Table("README.md", "path metropolis bdpt many_lights", 40, regrets.lines),
-    "sampler": Table("docs/methods/samplers.md", "path bdpt light", 10, samplers.lines),
-    "which-method": Table("docs/methods/README.md", "path bdpt many_lights metropolis", 25, which_method.lines),
+    "regret": Table("README.md", 40, regrets),
+    "sampler": Table("docs/methods/samplers.md", 10, samplers),
+    "which-method": Table("docs/methods/README.md", 25, which_method),
 }
 
 
 def code_of(table):
-    return code.renderer(types.SimpleNamespace(needs=table.integrators))
+    return code.renderer(types.SimpleNamespace(needs=" ".join(table.module.INTEGRATORS)))
 
 
 def marks(page):
@@ -59,7 +58,7 @@ def measure(name):
     folder = ROOT / "build/measured" / name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    lines = table.lines(folder)
+    lines = table.module.lines(folder)
     page = ROOT / table.page
     text, mark = page.read_text(), marks(table.page)[name]
     new = f"<!-- ./dev docs --measure {name}: commit {identity.commit()}, code {code_of(table)} -->\n" + "\n".join(lines) + "\n"

@@ -3,6 +3,7 @@
 import bench
 import sampler
 
+INTEGRATORS = {integrator["type"] for _, integrator, _ in sampler.METHODS}
 NAMES = {"path, direct light": "`path`, direct light", "path": "`path`, 6 edges", "bdpt": "`bdpt` `paired`, 6 edges",
          "bdpt, skeleton": "`bdpt` `skeleton`, 6 edges", "light": "`light`, 6 edges"}
 

@@ -15,6 +15,7 @@ SCENES = {
 }
 METHODS = ["path", "path skeleton", "path sd_tree", "bdpt paired", "bdpt skeleton", "many_lights probabilistic",
            "metropolis"]
+INTEGRATORS = {method.split()[0] for method in METHODS}
 
 
 def method(integrator):

@@ -8,11 +8,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/json/json_text.h"
 #include "base/storage/atomic_file.h"
 #include "base/storage/passing_error.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/described_json.h"
+#include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
 #include "jobs/store/inputs.h"
 #include "jobs/store/new_folder.h"
@@ -63,7 +63,11 @@ class Reader {
                     fmt::format("shard {} of {} is {}, not done{}; `lacuna render` continues it",
                                 number, shard.spec.shards, enum_name(state.state), reason));
     }
-    const auto report = parse_own(read_file(folder.file("report.json"), 1 << 24));
+    constexpr std::size_t most_bytes = 1 << 24;
+    std::vector<Problem> problems;
+    const Json report = parse_document(read_file(folder.file("report.json"), most_bytes),
+                                       {most_bytes, max_json_depth}, problems);
+    throw_if_any(std::move(problems));
     shard.iterations = report.at("counts").at("iterations").get<std::uint64_t>();
     shard.processor = report.at("machine").at("processor").get<std::string>();
     const CheckpointKey key = read_checkpoint_key(folder.file("checkpoint.bin"));

@@ -38,7 +38,7 @@ std::string write_document(const T& settings) {
   return document_text(ObjectWriter::value_of(settings));
 }
 
-// In job_json.cpp: all settings take part in it.
+// Instantiated in job_json.cpp only: it needs code for every setting, which takes long to compile.
 struct JobSpec;
 extern template OrderedJson ObjectWriter::value_of(const JobSpec& job);
 

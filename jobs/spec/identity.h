@@ -109,7 +109,7 @@ T without(const T& settings, KeyList left_out) {
   return rest;
 }
 
-// In identity.cpp: all settings take part in them.
+// Instantiated in identity.cpp only: they need code for every setting.
 extern template std::string picture_key(const JobSpec& job);
 extern template std::string preparation_key(const JobSpec& job);
 extern template JobSpec without(const JobSpec& job, KeyList left_out);

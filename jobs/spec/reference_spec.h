@@ -52,6 +52,7 @@ std::string picture_name(const Job& job) {
   return hash_without(ObjectWriter::value_of(job), not_in_a_reference);
 }
 
+// Instantiated in reference_spec.cpp only: they need code for every setting.
 extern template JobSpec reference_spec(const JobSpec& job);
 extern template std::string picture_name(const JobSpec& job);
 

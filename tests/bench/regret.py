@@ -131,8 +131,10 @@ def best_of(errors):
     return min((e for m, e in errors.items() if m != "auto" and e), default=None)
 
 
-def rows(found, seconds, metric):
-    """The errors of each scene over the best fixed method's, as rows of Markdown."""
+def lines(found, seconds, metric, title, names):
+    """The errors of each scene over the best fixed method's, as a table in Markdown. `names`: of the methods in it."""
+    yield f"| {title} | {' | '.join(names[m] for m in (*METHODS, 'auto'))} | `auto` chose |"
+    yield "| --- |" + " --- |" * (len(METHODS) + 2)
     for scene, (errors, chosen) in found.items():
         of = errors[seconds, metric]
         if best := best_of(of):
@@ -143,10 +145,7 @@ def rows(found, seconds, metric):
 def table(found, seconds, metric, seeds):
     """Prints the errors over the best fixed method's. Returns {scene: regret}."""
     print(f"\n{metric} over the best fixed method's, {seconds:g} CPU seconds a thread, {seeds} seeds\n")
-    names = [*METHODS, "auto"]
-    print("| scene |", " | ".join(f"`{m}`" for m in names), "| chosen |")
-    print("| --- |" + " --- |" * (len(names) + 1))
-    print(*rows(found, seconds, metric), sep="\n")
+    print(*lines(found, seconds, metric, "scene", {m: f"`{m}`" for m in (*METHODS, "auto")}), sep="\n")
     known = {scene: errors[seconds, metric] for scene, (errors, _) in found.items()}
     return {scene: of["auto"] / best for scene, of in known.items() if (best := best_of(of)) and of["auto"]}
 

@@ -1,10 +1,11 @@
 #include "base/json/json_cursor.h"
-#include "base/json/json_text.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <vector>
+
+#include "base/json/json_text.h"
 
 namespace lacuna {
 namespace {

@@ -1,9 +1,10 @@
 #include "jobs/run/artefacts_json.h"
-#include "base/json/json_text.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+
+#include "base/json/json_text.h"
 
 namespace lacuna {
 namespace {

@@ -1,6 +1,6 @@
 #include "jobs/run/foreign_job.h"
-#include "base/json/json_text.h"
 
+#include "base/json/json_text.h"
 #include "jobs/run/foreign_program.h"
 #include "jobs/spec/job_json.h"
 #include "renderer/core/scene_error.h"

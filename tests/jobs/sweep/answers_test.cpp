@@ -1,5 +1,4 @@
 #include "jobs/sweep/answers.h"
-#include "base/json/json_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/json/json_text.h"
 #include "base/storage/atomic_file.h"
 #include "tests/temporary_folder.h"
 
